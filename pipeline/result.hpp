@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/config.hpp"
+#include "stages/export/export.hpp"
+#include "stages/extract/extract.hpp"
+#include "stages/types.hpp"
+
+namespace seampath {
+
+/// What one stage did in this run.
+struct StageTiming {
+    std::string stage;
+    double seconds = 0;
+    bool resumed = false;      ///< taken from an earlier run's artefact
+    std::string summary;       ///< what went in, what came out, the quality number
+};
+
+/// Everything that is known of one part after a run. `nodes`, `models` and `deviations` run parallel to
+/// `extraction.seams`; `plan` and `programs` hold only the seams that may be welded.
+struct PartResult {
+    Config config;
+    Scan scan;
+    Extraction extraction;
+    std::vector<Nodes> nodes;
+    std::vector<SeamModel> models;
+    std::vector<Deviation> deviations;
+    std::vector<int> planned_seams;          ///< indices into models, in the order of Waypoint::seam
+    Plan plan;
+    std::vector<ProgramFile> programs;
+    std::vector<StageTiming> timings;
+
+    bool pass() const;                       ///< at least one seam, and all of them in tolerance
+};
+
+}  // namespace seampath

@@ -1,0 +1,260 @@
+#include "stages/geometry/bspline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "stages/error.hpp"
+
+namespace seampath {
+namespace {
+
+// Eight-point Gauss-Legendre on [-1, 1] (Abramowitz & Stegun, table 25.4).
+constexpr std::array<double, 4> kGaussNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+constexpr std::array<double, 4> kGaussWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+
+// Pieces of the arc-length table per knot span: |c'| is no polynomial, short pieces keep the quadrature at rounding level.
+constexpr int kPiecesPerSpan = 4;
+
+double wrap(double u, double first, double period) {
+    const double turns = std::floor((u - first) / period);
+    return std::clamp(u - turns * period, first, first + period);
+}
+
+double speed_integral(const CubicBSpline& curve, double a, double b) {
+    const double half = 0.5 * (b - a), middle = 0.5 * (a + b);
+    double sum = 0;
+    for (std::size_t k = 0; k < kGaussNode.size(); ++k) {
+        sum += kGaussWeight[k] * (derivative(curve, middle - half * kGaussNode[k]).norm() +
+                                  derivative(curve, middle + half * kGaussNode[k]).norm());
+    }
+    return half * sum;
+}
+
+template <class Weights>
+Eigen::Vector3d combine(const CubicBSpline& curve, const CubicBasis& basis, const Weights& weights) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) {
+        sum += weights[k] * curve.control[basis.control[k]];
+    }
+    return sum;
+}
+
+CubicBasis basis_at(const CubicBSpline& curve, double u) {
+    return cubic_basis(curve.knots, curve.control.size(), curve.periodic, u);
+}
+
+}  // namespace
+
+CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, bool periodic, double u) {
+    // The eight knots around u: t[3] <= u <= t[4].
+    std::array<double, 8> t;
+    CubicBasis basis;
+    if (periodic) {
+        const auto n = static_cast<std::ptrdiff_t>(controls);
+        const double period = knots.back() - knots.front();
+        u = wrap(u, knots.front(), period);
+        const auto above = std::upper_bound(knots.begin(), knots.end(), u) - knots.begin();
+        const std::ptrdiff_t span = std::clamp<std::ptrdiff_t>(above - 1, 0, n - 1);
+        for (std::ptrdiff_t k = 0; k < 8; ++k) {
+            const std::ptrdiff_t j = span + k - 3;
+            const std::ptrdiff_t turn = j >= 0 ? j / n : -((-j + n - 1) / n);
+            t[k] = knots[j - turn * n] + static_cast<double>(turn) * period;
+        }
+        for (std::ptrdiff_t k = 0; k < 4; ++k) {
+            basis.control[k] = static_cast<std::size_t>((span + k) % n);
+        }
+    } else {
+        u = std::clamp(u, knots[3], knots[controls]);
+        const auto above = std::upper_bound(knots.begin(), knots.end(), u) - knots.begin();
+        const std::ptrdiff_t span = std::clamp<std::ptrdiff_t>(above - 1, 3, static_cast<std::ptrdiff_t>(controls) - 1);
+        for (std::ptrdiff_t k = 0; k < 8; ++k) {
+            t[k] = knots[span + k - 3];
+        }
+        for (std::ptrdiff_t k = 0; k < 4; ++k) {
+            basis.control[k] = static_cast<std::size_t>(span - 3 + k);
+        }
+    }
+    // Cox-de Boor, degree by degree; N[d][k] is the basis function of degree d that starts at knot 3 - d + k.
+    std::array<std::array<double, 4>, 4> N{};
+    N[0][0] = 1;
+    for (int d = 1; d <= 3; ++d) {
+        for (int k = 0; k <= d; ++k) {
+            const int i = 3 - d + k;
+            double sum = 0;
+            if (k > 0 && t[i + d] > t[i]) {
+                sum += (u - t[i]) / (t[i + d] - t[i]) * N[d - 1][k - 1];
+            }
+            if (k < d && t[i + d + 1] > t[i + 1]) {
+                sum += (t[i + d + 1] - u) / (t[i + d + 1] - t[i + 1]) * N[d - 1][k];
+            }
+            N[d][k] = sum;
+        }
+    }
+    // Derivative of a basis function of degree d: d (N_{i}/(t_{i+d}-t_i) - N_{i+1}/(t_{i+d+1}-t_{i+1})) of degree d - 1.
+    const auto differentiate = [&t](int d, int k, const auto& lower, int lower_size) {
+        const int i = 3 - d + k;
+        double sum = 0;
+        if (k > 0 && t[i + d] > t[i]) {
+            sum += lower[k - 1] / (t[i + d] - t[i]);
+        }
+        if (k < lower_size && t[i + d + 1] > t[i + 1]) {
+            sum -= lower[k] / (t[i + d + 1] - t[i + 1]);
+        }
+        return d * sum;
+    };
+    std::array<double, 4> quadratic_d1{};
+    for (int k = 0; k < 3; ++k) {
+        quadratic_d1[k] = differentiate(2, k, N[1], 2);
+    }
+    for (int k = 0; k < 4; ++k) {
+        basis.value[k] = N[3][k];
+        basis.d1[k] = differentiate(3, k, N[2], 3);
+        basis.d2[k] = differentiate(3, k, quadratic_d1, 3);
+    }
+    return basis;
+}
+
+double first_parameter(const CubicBSpline& curve) { return curve.periodic ? curve.knots.front() : curve.knots[3]; }
+double last_parameter(const CubicBSpline& curve) {
+    return curve.periodic ? curve.knots.back() : curve.knots[curve.control.size()];
+}
+
+Eigen::Vector3d position(const CubicBSpline& curve, double u) {
+    const CubicBasis basis = basis_at(curve, u);
+    return combine(curve, basis, basis.value);
+}
+Eigen::Vector3d derivative(const CubicBSpline& curve, double u) {
+    const CubicBasis basis = basis_at(curve, u);
+    return combine(curve, basis, basis.d1);
+}
+Eigen::Vector3d second_derivative(const CubicBSpline& curve, double u) {
+    const CubicBasis basis = basis_at(curve, u);
+    return combine(curve, basis, basis.d2);
+}
+Eigen::Vector3d tangent(const CubicBSpline& curve, double u) { return derivative(curve, u).normalized(); }
+double curvature(const CubicBSpline& curve, double u) {
+    const Eigen::Vector3d d1 = derivative(curve, u);
+    return d1.cross(second_derivative(curve, u)).norm() / std::pow(d1.norm(), 3);
+}
+
+ArcLength::ArcLength(CubicBSpline curve) : curve_(std::move(curve)) {
+    const double first = first_parameter(curve_), last = last_parameter(curve_);
+    ensure(last > first, "a curve needs a domain");
+    knot_.push_back(first);
+    station_.push_back(0);
+    double from = first;
+    for (const double knot : curve_.knots) {
+        const double to = std::min(knot, last);
+        if (to <= from) {
+            continue;
+        }
+        for (int piece = 1; piece <= kPiecesPerSpan; ++piece) {
+            const double end = piece == kPiecesPerSpan ? to : from + (to - from) * piece / kPiecesPerSpan;
+            station_.push_back(station_.back() + speed_integral(curve_, knot_.back(), end));
+            knot_.push_back(end);
+        }
+        from = to;
+    }
+}
+
+double ArcLength::station(double u) const {
+    const auto above = std::upper_bound(knot_.begin(), knot_.end(), u) - knot_.begin();
+    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(knot_.size()) - 2));
+    return station_[i] + speed_integral(curve_, knot_[i], std::clamp(u, knot_.front(), knot_.back()));
+}
+
+double ArcLength::parameter(double station) const {
+    station = curve_.periodic ? wrap(station, 0, length()) : std::clamp(station, 0.0, length());
+    const auto above = std::upper_bound(station_.begin(), station_.end(), station) - station_.begin();
+    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(knot_.size()) - 2));
+    const double ds = station_[i + 1] - station_[i];
+    double u = ds > 0 ? knot_[i] + (knot_[i + 1] - knot_[i]) * (station - station_[i]) / ds : knot_[i];
+    for (int iteration = 0; iteration < 8; ++iteration) {
+        const double error = station_[i] + speed_integral(curve_, knot_[i], u) - station;
+        const double speed = derivative(curve_, u).norm();
+        if (speed <= 0 || std::abs(error) < 1e-13 * (1 + station)) {
+            break;
+        }
+        u = std::clamp(u - error / speed, knot_[i], knot_[i + 1]);
+    }
+    return u;
+}
+
+double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, double start) {
+    const double first = first_parameter(curve), last = last_parameter(curve);
+    double u = start;
+    double best = (position(curve, u) - p).squaredNorm();
+    for (int iteration = 0; iteration < 20; ++iteration) {
+        const Eigen::Vector3d r = position(curve, u) - p;
+        const Eigen::Vector3d d1 = derivative(curve, u);
+        const double slope = r.dot(d1);
+        double bend = d1.squaredNorm() + r.dot(second_derivative(curve, u));
+        if (bend <= 0.1 * d1.squaredNorm()) {
+            bend = d1.squaredNorm();      // near the centre of curvature Newton's step would leave: Gauss-Newton's does not
+        }
+        double step = -slope / bend;
+        bool moved = false;
+        for (int halving = 0; halving < 12 && !moved; ++halving, step *= 0.5) {
+            double next = u + step;
+            if (!curve.periodic) {
+                next = std::clamp(next, first, last);
+            }
+            const double distance = (position(curve, next) - p).squaredNorm();
+            if (distance < best) {
+                moved = std::abs(next - u) > 1e-13 * (last - first);
+                best = distance;
+                u = next;
+                break;
+            }
+        }
+        if (!moved) {
+            break;
+        }
+    }
+    return curve.periodic ? wrap(u, first, last - first) : u;
+}
+
+double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p) {
+    const double first = first_parameter(curve), last = last_parameter(curve);
+    const int samples = static_cast<int>(8 * curve.control.size()) + 8;
+    double best = first, best_distance = (position(curve, first) - p).squaredNorm();
+    for (int i = 1; i <= samples; ++i) {
+        const double u = first + (last - first) * i / samples;
+        const double distance = (position(curve, u) - p).squaredNorm();
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = u;
+        }
+    }
+    return nearest_parameter(curve, p, best);
+}
+
+FlankSample flanks_at(const SeamModel& model, double station_mm) {
+    const auto& samples = model.flanks;
+    ensure(samples.size() >= 2, "a model needs at least two flank samples");
+    const double s = model.closed ? wrap(station_mm, 0, model.length_mm) : std::clamp(station_mm, 0.0, model.length_mm);
+    auto above = std::upper_bound(samples.begin(), samples.end(), s,
+                                  [](double value, const FlankSample& sample) { return value < sample.station_mm; });
+    const bool outside = above == samples.begin() || above == samples.end();
+    if (outside && !model.closed) {
+        return above == samples.begin() ? samples.front() : samples.back();
+    }
+    const FlankSample& b = above == samples.end() ? samples.front() : *above;
+    const FlankSample& a = above == samples.begin() ? samples.back() : *(above - 1);
+    double gap = b.station_mm - a.station_mm, along = s - a.station_mm;
+    if (outside) {
+        gap += model.length_mm;
+        along += above == samples.begin() ? model.length_mm : 0;
+    }
+    const double w = gap > 0 ? along / gap : 0;
+    FlankSample result;
+    result.station_mm = s;
+    result.n1 = ((1 - w) * a.n1 + w * b.n1).normalized();
+    result.n2 = ((1 - w) * a.n2 + w * b.n2).normalized();
+    result.sigma_mm = (1 - w) * a.sigma_mm + w * b.sigma_mm;
+    result.modelled = w < 0.5 ? a.modelled : b.modelled;
+    return result;
+}
+
+}  // namespace seampath

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "stages/options.hpp"
+#include "stages/types.hpp"
+
+namespace seampath {
+
+struct ValidateOptions {
+    double tolerance_mm = 0;        ///< 0: from the scan's noise
+    double min_coverage = 0.9;
+};
+Fields describe(ValidateOptions&);
+
+/// Deviation of the model from the raw scan's two flank surfaces, and the verdict.
+Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options);
+
+}  // namespace seampath
