@@ -25,6 +25,7 @@ struct Cloud {
     std::vector<Eigen::Vector3f> normals;  ///< as in the file, or empty
     std::vector<std::uint32_t> record;     ///< record number of each point, ascending; organised clouds only
     std::uint64_t records = 0;             ///< in the file, finite or not
+    std::uint64_t dropped = 0;             ///< of these, not finite
     std::uint32_t width = 0;               ///< raster of an organised cloud, or 0
     std::uint32_t height = 0;
     std::optional<Eigen::Vector3d> sensor;

@@ -103,6 +103,7 @@ void decode_columns(Cloud& cloud, const std::array<Column, 3>& position,
             slots.add(load_vector(position, i), normal ? load_vector(*normal, i) : Eigen::Vector3d(0, 0, 0), i);
         }
     });
+    cloud.dropped = count - cloud.points.size();
 }
 
 }  // namespace seampath

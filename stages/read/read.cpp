@@ -11,6 +11,7 @@
 #include "stages/error.hpp"
 #include "stages/read/file.hpp"
 #include "stages/read/formats.hpp"
+#include "stages/read/rows.hpp"
 #include "stages/read/source.hpp"
 #include "stages/read/unit.hpp"
 
@@ -67,16 +68,14 @@ void check_not_empty(const Source& source, const Cloud& cloud) {
     }
 }
 
-Scan finish(const Source& source, const std::string& name, ScanFormat format, const ReadOptions& options, Cloud cloud) {
-    check_not_empty(source, cloud);
-    const UnitChoice unit = choose_unit(source, options.unit, format, largest_extent(cloud.points));
+Scan finish(const std::string& name, const UnitChoice& unit, Cloud cloud) {
     Scan scan;
     scan.name = name;
     scan.format = cloud.format;
     scan.mm_per_unit = unit.mm_per_unit;
     scan.unit_reason = unit.reason;
     scan.points_in_file = cloud.records;
-    scan.dropped_not_finite = cloud.records - cloud.points.size();
+    scan.dropped_not_finite = cloud.dropped;
     scan.origin_mm = cloud.origin * unit.mm_per_unit;
     scan.width = cloud.width;
     scan.height = cloud.height;
@@ -91,16 +90,60 @@ Scan finish(const Source& source, const std::string& name, ScanFormat format, co
     return scan;
 }
 
-Scan read_source(const Source& source, const std::string& name, ScanFormat format, const ReadOptions& options) {
+Cloud read_cloud(const Source& source, ScanFormat format) {
     switch (format) {
         case ScanFormat::ply:
-            return finish(source, name, format, options, read_ply(source));
+            return read_ply(source);
         case ScanFormat::pcd:
-            return finish(source, name, format, options, read_pcd(source));
+            return read_pcd(source);
         default:
-            break;
+            return read_text(source);
     }
-    fail(source, "has a format that is not read; expected PLY or PCD; convert the scan");
+}
+
+Scan read_points(const Source& source, const std::string& name, ScanFormat format, const ReadOptions& options) {
+    Cloud cloud = read_cloud(source, format);
+    check_not_empty(source, cloud);
+    const UnitChoice unit = choose_unit(source, options.unit, format, largest_extent(cloud.points));
+    return finish(name, unit, std::move(cloud));
+}
+
+Scan read_mesh(const Source& source, const std::string& name, ScanFormat format, const ReadOptions& options) {
+    const Mesh mesh = format == ScanFormat::stl ? read_stl(source) : read_obj(source);
+    const UnitChoice unit = choose_unit(source, options.unit, format, largest_extent(mesh));
+    Cloud cloud = sample_mesh(source, mesh, options.mesh_spacing_mm / unit.mm_per_unit);
+    check_not_empty(source, cloud);
+    return finish(name, unit, std::move(cloud));
+}
+
+Scan read_source(const Source& source, const std::string& name, ScanFormat format, const ReadOptions& options) {
+    const bool mesh = format == ScanFormat::stl || format == ScanFormat::obj;
+    return mesh ? read_mesh(source, name, format, options) : read_points(source, name, format, options);
+}
+
+/// The format of a file whose extension says nothing, from its first bytes.
+std::optional<ScanFormat> format_by_content(std::string_view bytes) {
+    std::size_t next = 0;
+    const std::string_view row = next_row(bytes.substr(0, 4096), next);
+    if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) {
+        return ScanFormat::ply;
+    }
+    if (bytes.starts_with("# .PCD") || row.starts_with("VERSION") || row.starts_with("FIELDS")) {
+        return ScanFormat::pcd;
+    }
+    if (is_stl(bytes)) {
+        return ScanFormat::stl;
+    }
+    if (row.find('\0') != std::string_view::npos) {
+        return std::nullopt;
+    }
+    for (const std::string_view word : {"v ", "vn ", "o ", "g ", "mtllib "}) {
+        if (row.starts_with(word)) {
+            return ScanFormat::obj;
+        }
+    }
+    const bool numbers = !row.empty() && std::string_view("+-.0123456789").find(row.front()) != std::string_view::npos;
+    return numbers ? std::optional(ScanFormat::text) : std::nullopt;
 }
 
 std::string lower_extension(const std::filesystem::path& file) {
@@ -125,8 +168,13 @@ ScanFormat format_of(const std::filesystem::path& file, const Source& source) {
             return format;
         }
     }
-    fail(source, "extension " + in_quotes(extension) +
-                     " is not known; expected one of .ply .pcd .xyz .csv .asc .txt .stl .obj");
+    if (const auto format = format_by_content(source.bytes)) {
+        return *format;
+    }
+    fail(source,
+         "extension " + in_quotes(extension) +
+             " is not known and the content tells no format; expected one of .ply .pcd .xyz .csv .asc .txt .stl .obj; "
+             "rename or convert the file");
 }
 
 }  // namespace

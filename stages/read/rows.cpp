@@ -169,6 +169,7 @@ void decode_rows(Cloud& cloud, const Source& source, const Rows& rows, std::size
             slots.add({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, row - first);
         }
     });
+    cloud.dropped = count - cloud.points.size();
 }
 
 }  // namespace seampath
