@@ -35,20 +35,21 @@ Complaint read_item(std::string_view& line, const RowItem& item, char separator,
     return {};
 }
 
-Complaint read_row(std::string_view line, const RowLayout& layout, RowNumbers& numbers) {
-    std::size_t done = 0;
-    for (const RowItem& item : layout.items) {
-        // With a separator the last field of a row may be an empty one behind it.
-        if (line.empty() && (layout.separator == ' ' || done > 0)) {
-            return "the line has " + std::to_string(done) + " of the " + std::to_string(layout.items.size()) +
+Complaint read_row(const std::string_view row, const RowLayout& layout, RowNumbers& numbers) {
+    std::string_view line = row;
+    for (std::size_t i = 0; i < layout.items.size(); ++i) {
+        // A separator at the very end has an empty field behind it.
+        const bool last_is_empty =
+            layout.separator != ' ' && i + 1 == layout.items.size() && row.ends_with(layout.separator);
+        if (line.empty() && !last_is_empty) {
+            return "the line has " + std::to_string(i) + " of the " + std::to_string(layout.items.size()) +
                    " values expected";
         }
-        if (Complaint complaint = read_item(line, item, layout.separator, numbers); !complaint.empty()) {
+        if (Complaint complaint = read_item(line, layout.items[i], layout.separator, numbers); !complaint.empty()) {
             return complaint;
         }
-        ++done;
     }
-    if (!trimmed(line).empty()) {
+    if (!line.empty()) {
         return "the line has more than the " + std::to_string(layout.items.size()) + " values expected";
     }
     return {};
@@ -71,12 +72,7 @@ bool RowLayout::has_normals() const {
 
 std::string_view next_field(std::string_view& line, char separator) {
     if (separator == ' ') {
-        const std::string_view token = next_token(line);
-        // Blanks at the end of a line are no field.
-        if (!line.empty() && trimmed(line).empty()) {
-            line = {};
-        }
-        return token;
+        return next_token(line);
     }
     const std::size_t end = line.find(separator);
     const std::string_view field = trimmed(line.substr(0, end));

@@ -50,7 +50,7 @@ std::vector<RowNumbers> sample_rows(const Source& source, const Rows& rows, std:
 void decode_rows(Cloud& cloud, const Source& source, const Rows& rows, std::size_t first, std::size_t count,
                  const RowLayout& layout, bool record_numbers);
 
-/// Takes the next field of a row.
+/// Takes the next field of a row, which has no blanks at its ends.
 std::string_view next_field(std::string_view& line, char separator);
 
 /// The first row from `offset` on, trimmed; `offset` moves behind it. Empty when there is none.

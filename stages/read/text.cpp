@@ -59,10 +59,10 @@ RowLayout layout_of_header(const Source& source, std::size_t at, const std::vect
         }
     }
     if (!std::all_of(found.begin(), found.begin() + 3, [](int n) { return n == 1; })) {
-        fail_at_line(
-            source, at,
-            "neither numbers nor a header that names one column each x, y and z; give it these names, or put # "
-            "before the line so that the first three columns are taken");
+        fail_at_line(source, at,
+                     "neither numbers (with decimal points) nor a header that names one column each x, y and z; give "
+                     "it these names, or put # "
+                     "before the line so that the first three columns are taken");
     }
     if (!std::all_of(found.begin() + 3, found.end(), [](int n) { return n == 1; })) {
         for (RowItem& item : layout.items) {

@@ -26,11 +26,12 @@ double largest_extent(const std::vector<Eigen::Vector3f>& points) {
             values.push_back(points[i][axis]);
         }
         const auto stray = static_cast<std::ptrdiff_t>(values.size() / kPerStray);
-        const auto low = values.begin() + stray;
-        const auto high = values.end() - 1 - stray;
-        std::nth_element(values.begin(), low, values.end());
-        std::nth_element(low, high, values.end());
-        extent = std::max(extent, static_cast<double>(*high) - static_cast<double>(*low));
+        const auto nth = [&](std::ptrdiff_t n) {
+            std::nth_element(values.begin(), values.begin() + n, values.end());
+            return static_cast<double>(values[static_cast<std::size_t>(n)]);
+        };
+        const double high = nth(static_cast<std::ptrdiff_t>(values.size()) - 1 - stray);
+        extent = std::max(extent, high - nth(stray));
     }
     return extent;
 }
