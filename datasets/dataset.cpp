@@ -34,8 +34,8 @@ Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, s
     if (threads == 0) {
         threads = std::max(1U, std::thread::hardware_concurrency());
     }
-    for (const View& view : scan_scene(made, scanner, seed, threads)) {
-        for (const Eigen::Vector3d& p : view.points) {
+    for (int i = 0; i < scanner.views; ++i) {
+        for (const Eigen::Vector3d& p : take_view(made, scanner, seed, i, threads).points) {
             if (!std::isnan(p.x())) {
                 dataset.points.push_back((dataset.scan_from_scene * p).cast<float>());
             }

@@ -74,6 +74,17 @@ inline double log(double x) {
     return 2 * y * sum + exponent * 0.69314718055994530942;
 }
 
+/// Exponential for |x| < 700: x = k ln 2 + r, Taylor series in r.
+inline double exp(double x) {
+    const double k = std::floor(x / 0.69314718055994530942 + 0.5);
+    const double r = x - k * 0.69314718055994530942;  // |r| <= 0.347
+    double sum = 1;
+    for (int n = 15; n >= 1; --n) {  // next term: 0.347^16 / 16! = 2e-21
+        sum = 1 + sum * r / n;
+    }
+    return std::ldexp(sum, static_cast<int>(k));
+}
+
 inline double radians(double degrees) {
     return degrees * (kPi / 180);
 }

@@ -7,6 +7,7 @@ namespace seampath {
 
 Fields describe(ScannerOptions& o) {
     return {
+        {"sensor", choice(o.sensor, kSensorNames), "camera with projector, or profile sensor on a robot"},
         {"sigma_mm", &o.sigma_mm, "noise along the ray, face on, at the working distance", at_least(0)},
         {"pitch_x_mm", &o.pitch_x_mm, "distance of pixels on a face-on surface, across", above(0)},
         {"pitch_y_mm", &o.pitch_y_mm, "distance of pixels on a face-on surface, down", above(0)},
@@ -24,6 +25,8 @@ Fields describe(ScannerOptions& o) {
         {"quantisation_mm", &o.quantisation_mm, "step of depth; 0: none", at_least(0)},
         {"bow_mm", &o.bow_mm, "depth error from the middle of the picture to its corners"},
         {"scale_error", &o.scale_error, "largest relative error of size", within(0, 0.1)},
+        {"path_error_mm", &o.path_error_mm, "amplitude of the robot's waves that carries a profile sensor",
+         at_least(0)},
         {"registration_mm", &o.registration_mm, "1-sigma of each view's position, per axis", at_least(0)},
         {"registration_deg", &o.registration_deg, "1-sigma of each view's rotation, per axis", at_least(0)}};
 }

@@ -13,24 +13,31 @@
 
 namespace seampath {
 
-/// How the scanner sees: a camera and a projector that go round the part. The defaults are the preset `standard`.
+/// A camera with a projector takes a picture at once; a profile sensor (laser line) is carried along the part by a
+/// robot.
+enum class SensorKind { camera, profile };
+inline constexpr std::array<std::string_view, 2> kSensorNames{"camera", "profile"};
+
+/// How the scanner sees. The defaults are the preset `standard`.
 struct ScannerOptions {
-    double sigma_mm = 0.045;  ///< along the ray, face on, at the working distance
-    double pitch_x_mm = 0.3;  ///< of pixels on a face-on surface at the working distance
-    double pitch_y_mm = 0.3;
+    SensorKind sensor = SensorKind::camera;
+    double sigma_mm = 0.045;   ///< along the ray, face on, at the working distance
+    double pitch_x_mm = 0.34;  ///< of pixels on a face-on surface at the working distance; all views together are
+    double pitch_y_mm = 0.34;  ///< denser: about 0.2 mm on what all of them see, 0.3 mm on what two see
     double working_distance_mm = 600;
-    int views = 4;
-    double elevation_deg = 45;        ///< of the views over the plate, give or take 6
-    double triangulation_deg = 25;    ///< between camera and projector, seen from the part
+    int views = 6;
+    double elevation_deg = 37;        ///< of the views over the plate, give or take 4
+    double triangulation_deg = 25;    ///< between camera and projector or laser, seen from the part
     double correlation_px = 1.2;      ///< 1-sigma width of the kernel that ties neighbouring errors; 0: white
     double mixed_pixels = 0.35;       ///< share of pixels at a depth step that fall between its two sides
     double dropout = 0.01;            ///< share of missing pixels, face on
     double blobs = 0.003;             ///< share of the picture lost in spots of 1 to 5 mm
     double outliers = 2e-4;           ///< share of pixels that fly anywhere in the view
     double ghosts = 0.01;             ///< share of pixels near a joint that are seen through the other flank
-    double quantisation_mm = 0;       ///< of depth; 0: none
-    double bow_mm = 0;                ///< depth error from the middle of the picture to its corners
+    double quantisation_mm = 0;       ///< step of depth; 0: none
+    double bow_mm = 0;                ///< depth error at the corners of the picture, from the middle
     double scale_error = 0;           ///< largest relative error of size; the seed draws it
+    double path_error_mm = 0;         ///< amplitude of the robot's waves that carries a profile sensor
     double registration_mm = 0.015;   ///< 1-sigma of each view's position, per axis
     double registration_deg = 0.003;  ///< 1-sigma of each view's rotation, per axis
 };
@@ -50,7 +57,7 @@ struct View {
     std::vector<Eigen::Vector3d> points;
 };
 
-/// What the scanner measures of a scene. The same for any number of threads.
-std::vector<View> scan_scene(const Scene& scene, const ScannerOptions& options, std::uint64_t seed, unsigned threads);
+/// View `index` of options.views. The same for any number of threads.
+View take_view(const Scene& scene, const ScannerOptions& options, std::uint64_t seed, int index, unsigned threads);
 
 }  // namespace seampath

@@ -56,18 +56,18 @@ std::vector<Usual> usual_dimensions(SceneKind kind) {
                     {&O::height_mm, 50},
                     {&O::corner_radius_mm, 10}};
         case SceneKind::pipe_on_plate:
-            return {plate, {&O::margin_mm, 40}, {&O::radius_mm, 40}, {&O::height_mm, 65}, {&O::lean_deg, 25}};
+            return {plate, {&O::margin_mm, 40}, {&O::radius_mm, 40}, {&O::height_mm, 65}, {&O::lean_deg, 22}};
         case SceneKind::pipe_on_pipe:
-            return {{&O::header_radius_mm, 60},
+            return {{&O::header_radius_mm, 55},
                     {&O::radius_mm, 0.62, 0.2, true},
                     {&O::height_mm, 60},
                     {&O::lean_deg, 0},
                     {&O::offset_mm, 0}};
         case SceneKind::pipe_on_pipe_oblique:
-            return {{&O::header_radius_mm, 65},
+            return {{&O::header_radius_mm, 58},
                     {&O::radius_mm, 0.54, 0.2, true},
                     {&O::height_mm, 55},
-                    {&O::lean_deg, 26},
+                    {&O::lean_deg, 24},
                     {&O::offset_mm, 0.18, 0.2, true}};
         case SceneKind::pipe_on_pipe_equal:
             return {{&O::header_radius_mm, 50},
@@ -165,6 +165,7 @@ Scene make_tee(const SceneOptions& o) {
               {Plane{half_thickness * side, side}, Plane{-half_thickness * side, -side}, Plane{*o.height_mm * up, up},
                Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, Plane{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
                Plane{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
+    scene.front = Vector3d::UnitY();
     for (const double sign : {1.0, -1.0}) {
         scene.box.extend(*o.height_mm * up + sign * half_thickness * side);
         add_seam(scene, false, -half_length, half_length, [&](double x) {
@@ -188,6 +189,7 @@ Scene make_s_curve(const SceneOptions& o) {
                Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, Plane{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
                Plane{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
     scene.box.extend(Vector3d(0, 0, *o.height_mm));
+    scene.front = Vector3d::UnitY();
     for (const SineWall& wall : {left, right}) {
         add_seam(scene, false, -half_length, half_length, [&](double x) {
             const Vector3d p(x, wall.offset + wall.amplitude * portable::sin(wave_number * x), 0);

@@ -77,6 +77,7 @@ Truth transformed(const Truth& truth, const Eigen::Isometry3d& to_from_here);
 struct Scene {
     std::vector<Surface> surfaces;
     Eigen::AlignedBox3d box;
+    Eigen::Vector3d front{1, 0, 0};  ///< level direction from which an operator would look at the joint first
     Truth truth;
 };
 
