@@ -108,6 +108,8 @@ Json json_info(const fs::path& file) {
     }
     if (has(root, {"stage", "key", "sha256", "content"})) {
         what = "artefact of a stage";
+    } else if (has(root, {"part", "verdict", "rows", "seams"})) {
+        what = "report";
     } else if (std::all_of(root.items().begin(), root.items().end(), [](const auto& item) {
                    return std::find(kStageNames.begin(), kStageNames.end(), item.key()) != kStageNames.end();
                })) {
