@@ -39,14 +39,24 @@ std::string header(const Report& report) {
            "<span>" + escape_html(report.sentence) + "</span></div></div></header>\n";
 }
 
+std::string key_figure(const ReportRows& rows, const std::string& path, std::string_view name) {
+    const ReportRow& row = find_row(rows, name);
+    return "<div><span>" + escape_html(row.label) + "</span><strong" + value_attributes(row, path) + '>' +
+           escape_html(shown(row)) + "</strong> <small>" + row.unit + "</small></div>";
+}
+
 std::string key_figures(const Report& report) {
-    std::string html = "<section class=\"key\">";
-    for (const std::string_view name :
-         {"seams", "length_mm", "modelled_length_mm", "deviation_rms_mm", "deviation_max_mm", "coverage_percent",
-          "waypoints", "duration_s", "programs"}) {
-        const ReportRow& row = find_row(report.rows, name);
-        html += "<div><span>" + escape_html(row.label) + "</span><strong" + value_attributes(row, "rows") + '>' +
-                escape_html(shown(row)) + "</strong> <small>" + row.unit + "</small></div>";
+    std::string html = "<section class=\"key\">" + key_figure(report.rows, "rows", "seams");
+    if (report.seams.empty()) {
+        for (const std::string_view name :
+             {"points", "size_x_mm", "size_y_mm", "size_z_mm", "spacing_mm", "noise_mm"}) {
+            html += key_figure(report.scan, "scan", name);
+        }
+        return html + "</section>\n";
+    }
+    for (const std::string_view name : {"length_mm", "modelled_length_mm", "deviation_rms_mm", "deviation_max_mm",
+                                        "coverage_percent", "duration_s", "programs"}) {
+        html += key_figure(report.rows, "rows", name);
     }
     return html + "</section>\n";
 }
@@ -59,7 +69,8 @@ std::string legend(const ViewScene& scene) {
     const auto item = [](const std::string& paint, const std::string& text) {
         return "<div class=\"item\"><i style=\"background:" + paint + "\"></i>" + text + "</div>";
     };
-    return "<div id=\"legend\" class=\"overlay\">Deviation of the seam from the scan<div class=\"bar\" "
+    return "<div id=\"legend\" class=\"overlay\"><span class=\"title\">Seam from scanned surfaces</span><div "
+           "class=\"bar\" "
            "style=\"background:linear-gradient(90deg" +
            stops + ")\"></div><div class=\"ends\"><span>0</span><span>" + decimal(scene.scale_mm / 2, 3) +
            "</span><span>" + decimal(scene.scale_mm, 3) + " mm</span></div>" +
@@ -80,20 +91,27 @@ std::string axes_overlay() {
     return svg + "</svg>";
 }
 
-std::string view_section(const ViewScene& scene) {
-    std::string html =
-        "<section><div id=\"view\">" + view_svg(scene) + axes_overlay() + legend(scene) +
-        "<div id=\"scale-bar\" class=\"overlay live-only\"></div><div id=\"tip\" class=\"overlay\" hidden></div></div>"
-        "<div class=\"toolbar\">";
-    for (const auto& [layer, label] : {std::pair("scan", "Scan"), std::pair("seam", "Seams"),
-                                       std::pair("nodes", "Nodes"), std::pair("torch", "Torch")}) {
-        html +=
-            std::string("<label><input type=\"checkbox\" data-layer=\"") + layer + "\" checked> " + label + "</label>";
+std::string toolbar(bool seams) {
+    const auto layer = [](const std::string& key, const std::string& label) {
+        return "<label><input type=\"checkbox\" data-layer=\"" + key + "\" checked> " + label + "</label>";
+    };
+    std::string html = "<div class=\"toolbar\">" + layer("scan", "Scan");
+    if (seams) {
+        html += layer("seam", "Seams") + layer("nodes", "Nodes") + layer("torch", "Torch");
     }
     return html +
            "<button type=\"button\" id=\"fit\">Fit view</button><span id=\"view-note\">Drag turns, Shift or right "
-           "button moves, "
-           "wheel or pinch zooms; a click on a seam in the table flies there.</span></div>"
+           "button "
+           "moves, wheel or pinch zooms" +
+           (seams ? "; a click on a seam in the table flies there" : "") + "</span></div>";
+}
+
+std::string view_section(const ViewScene& scene) {
+    const bool seams = !scene.seams.empty();
+    return "<section><div id=\"view\">" + view_svg(scene) + axes_overlay() + (seams ? legend(scene) : "") +
+           "<div id=\"scale-bar\" class=\"overlay live-only\"></div><div id=\"tip\" class=\"overlay\" "
+           "hidden></div></div>" +
+           toolbar(seams) +
            "<noscript><p class=\"note-line\">Scripts are off: this is a still picture.</p></noscript></section>\n";
 }
 

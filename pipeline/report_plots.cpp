@@ -17,6 +17,9 @@ constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCurvatureSamples = 600;
 constexpr int kBins = 40;
 
+/// Bends wider than 1 m look straight.
+constexpr double kLeastCurvature = 1e-3;
+
 /// A tolerance so many times larger than all that was measured would flatten the plot; it is then only named.
 constexpr double kToleranceInSight = 6;
 

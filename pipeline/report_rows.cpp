@@ -94,7 +94,7 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
             {"closed", "Closed", model.closed, "", "", 0},
             number("confidence", "Confidence of detection", seam.confidence, "", 2),
             number("length_mm", "Length", model.length_mm, "mm"),
-            number("modelled_length_mm", "Bridged, not measured", modelled_length(seam), "mm"),
+            number("modelled_length_mm", "Bridged by model", modelled_length(seam), "mm"),
             count("points", "Extracted points", seam.points.size()),
             number("sigma_median_mm", "Uncertainty of a point, median 1σ", median_sigma(seam), "mm"),
             number("sigma_max_mm", "Uncertainty of a point, largest 1σ", max_sigma(seam), "mm"),
@@ -178,17 +178,16 @@ ReportRows part_rows(const PartResult& part) {
     return {
         judged(count("seams", "Seams found", part.models.size()), !part.models.empty()),
         judged(count("seams_in_tolerance", "Seams in tolerance", in_tolerance), part.pass()),
-        number("length_mm", "Length of all seams", length, "mm"),
-        number("modelled_length_mm", "Bridged, not measured", modelled, "mm"),
-        number("deviation_rms_mm", "Deviation of all seams, rms", checked > 0 ? std::sqrt(rms_square / checked) : 0,
-               "mm"),
-        number("deviation_max_mm", "Largest deviation", worst, "mm"),
-        number("coverage_percent", "Seam checked against the scan", length > 0 ? 100 * checked / length : 0, "%", 1),
+        number("length_mm", "Seam length", length, "mm"),
+        number("modelled_length_mm", "Bridged by model", modelled, "mm"),
+        number("deviation_rms_mm", "Deviation, rms", checked > 0 ? std::sqrt(rms_square / checked) : 0, "mm"),
+        number("deviation_max_mm", "Deviation, largest", worst, "mm"),
+        number("coverage_percent", "Checked on the scan", length > 0 ? 100 * checked / length : 0, "%", 1),
         count("waypoints", "Waypoints", part.plan.waypoints.size()),
         number("path_chord_error_mm", "Straight moves from the curve, largest", part.plan.max_chord_error_mm, "mm"),
         number("max_speed_error_percent", "Torch speed error, largest", 100 * part.plan.max_speed_error, "%", 2),
         number("max_turn_deg", "Torch rotation per move, largest", part.plan.max_turn_deg, "°", 2),
-        number("duration_s", "Duration of the path", part.plan.duration_s, "s", 1),
+        number("duration_s", "Path duration", part.plan.duration_s, "s", 1),
         count("programs", "Program files", part.programs.size()),
         number("read_back_error_mm", "Program position error, largest", read_back, "mm", 6),
     };
@@ -218,7 +217,7 @@ std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
         return "No seam was found in this scan";
     }
     const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
-    return std::to_string(in_tolerance) + " of " + found + " in tolerance of the scanned surfaces";
+    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces";
 }
 
 }  // namespace

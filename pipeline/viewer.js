@@ -105,7 +105,7 @@
           vec4 eye = modelViewMatrix * vec4(position, 1.0);
           outward = (viewMatrix * vec4(side, 0.0)).xyz;
           eye.xyz += outward * (width > 0.0 ? width + margin : 0.0) * pixel * -eye.z;
-          eye.xyz *= 0.994;                       // nearer to the eye: the noise of the scan does not swallow the line
+          eye.xyz *= 0.988;                       // nearer to the eye: the noise of the scan does not swallow the line
           colour = tint;
           along = dash;
           gl_Position = projectionMatrix * eye;
@@ -162,7 +162,7 @@
       const tip = vector(p), along = vector(axis);
       const back = (share) => tip.clone().addScaledVector(along, -share * length);
       const ring = (share, width, start) => ({ p: back(share), along, colour, width, start, dash: -1 });
-      return [ring(1, 1, true), ring(0.3, 1, false), ring(0.3, 3, true), ring(0.02, 0, false)];
+      return [ring(1, 1, true), ring(0.3, 1, false), ring(0.3, 3.4, true), ring(0.03, 0, false)];
     });
   }
 
@@ -174,7 +174,7 @@
       vertexShader: `
         void main() {
           vec4 eye = modelViewMatrix * vec4(position, 1.0);
-          eye.xyz *= 0.990;
+          eye.xyz *= 0.984;
           gl_PointSize = ${(11 * devicePixelRatio).toFixed(1)};
           gl_Position = projectionMatrix * eye;
         }`,
@@ -399,7 +399,7 @@
     const aspect = () => host.clientWidth / host.clientHeight;
     const everything = () => {
       const all = points(scene.seams);
-      const r = scene.radius;
+      const r = 0.5 * scene.radius;
       return camera.pose(scene.camera, all.length > 1 ? all : [vector([-r, -r, -r]), vector([r, r, r])], aspect());
     };
     document.getElementById('fit').addEventListener('click', () => camera.fly(everything()));

@@ -14,7 +14,9 @@ constexpr double kRadius = 30, kPlate = 75, kPipeHeight = 55, kRibY = -52, kRibH
 const Vector3d kOrigin(1200, -350, 480);
 
 /// Noise of +-0.05 mm that needs no generator.
-double ripple(std::size_t i) { return 0.05 * std::sin(12.9898 * static_cast<double>(i) + 78.233); }
+double ripple(std::size_t i) {
+    return 0.05 * std::sin(12.9898 * static_cast<double>(i) + 78.233);
+}
 
 Scan example_scan() {
     Scan scan;
@@ -63,7 +65,8 @@ CurvePoint on_rib(double share) {
     return {kOrigin + Vector3d(kRibFrom + (kRibTo - kRibFrom) * share, kRibY, 0), Vector3d::UnitY(), Vector3d::UnitZ()};
 }
 
-void add_seam(PartResult& part, bool closed, CurvePoint (*curve)(double), double end, int points, const CubicBSpline& spline) {
+void add_seam(PartResult& part, bool closed, CurvePoint (*curve)(double), double end, int points,
+              const CubicBSpline& spline) {
     Seam seam;
     seam.closed = closed;
     seam.confidence = 0.97;
@@ -118,7 +121,8 @@ void add_deviation(PartResult& part, double tolerance, double amplitude) {
     deviation.coverage = model.closed ? 0.981 : 1;
     deviation.tolerance_mm = tolerance;
     deviation.pass = deviation.max_mm <= tolerance;
-    deviation.verdict = deviation.pass ? "every checked sample lies within the tolerance" : "the largest deviation is above the tolerance";
+    deviation.verdict = deviation.pass ? "every checked sample lies within the tolerance"
+                                       : "the largest deviation is above the tolerance";
     part.deviations.push_back(deviation);
 }
 
@@ -185,7 +189,8 @@ PartResult example_part(bool pass) {
     part.extraction.spacing_mm = 0.45;
     part.extraction.noise_mm = 0.035;
     part.extraction.orientation_reason = "the file says where the sensor stood";
-    part.extraction.remarks = {"a candidate of 6.1 mm between plate & clamp was dropped: shorter than 12 mm <min_length_mm>"};
+    part.extraction.remarks = {
+        "a candidate of 6.1 mm between plate & clamp was dropped: shorter than 12 mm <min_length_mm>"};
     add_seam(part, true, on_circle, 2 * kPi, 360, circle_spline(36));
     add_deviation(part, 0.1, 0.04);
     add_seam(part, false, on_rib, 1, 240, rib_spline());
