@@ -69,7 +69,7 @@ std::string legend(const ViewScene& scene) {
     const auto item = [](const std::string& paint, const std::string& text) {
         return "<div class=\"item\"><i style=\"background:" + paint + "\"></i>" + text + "</div>";
     };
-    return "<div id=\"legend\" class=\"overlay\"><span class=\"title\">Seam from scanned surfaces</span><div "
+    return "<div id=\"legend\" class=\"overlay\"><span class=\"title\">Deviation from the scan</span><div "
            "class=\"bar\" "
            "style=\"background:linear-gradient(90deg" +
            stops + ")\"></div><div class=\"ends\"><span>0</span><span>" + decimal(scene.scale_mm / 2, 3) +

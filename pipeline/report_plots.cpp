@@ -123,9 +123,9 @@ std::string histogram(const Deviation& deviation) {
         svg += svg_box(axes, {low, 0}, {high, share[static_cast<std::size_t>(k)]},
                        low >= tolerance ? "bar beyond" : "bar");
     }
-    svg += svg_mark(axes, deviation.p95_mm, "p95", "quantile");
+    svg += svg_mark(axes, deviation.p95_mm, "p95", "quantile", 0);
     if (in_sight) {
-        svg += svg_mark(axes, tolerance, "tolerance", "limit");
+        svg += svg_mark(axes, tolerance, "tolerance", "limit", 1);
     }
     return figure("", "<b>How often which deviation</b>", svg + svg_end());
 }
@@ -143,7 +143,7 @@ std::string curvature_plot(const SeamModel& model, const Seam& seam, const Nodes
         const double u = nearest_parameter(model.curve, seam.points[node].p);
         dots.push_back({arc.station(u), curvature(model.curve, u)});
     }
-    const PlotAxes axes{kNarrow,       kNarrowHeight,    0, arc.length(), 0, padded(most, 1e-4),
+    const PlotAxes axes{kNarrow,       kNarrowHeight,    0, arc.length(), 0, padded(most, kLeastCurvature),
                         "station, mm", "curvature, 1/mm"};
     return figure("", "<b>Curvature</b> and the nodes that carry the shape",
                   svg_axes(axes, "Curvature of the seam with its nodes") + svg_line(axes, line, "value") +

@@ -176,10 +176,10 @@ std::string svg_level(const PlotAxes& axes, double y, std::string_view text, std
            text_element(axes.width - kRight - 4, pixel_y(axes, y) - 4, "note end", text);
 }
 
-std::string svg_mark(const PlotAxes& axes, double x, std::string_view text, std::string_view style) {
+std::string svg_mark(const PlotAxes& axes, double x, std::string_view text, std::string_view style, int line) {
     const bool left = pixel_x(axes, x) > 0.7 * axes.width;
     return line_element(pixel_x(axes, x), kTop, pixel_x(axes, x), axes.height - kBottom, style) +
-           text_element(pixel_x(axes, x) + (left ? -4 : 4), kTop + 11, left ? "note end" : "note", text);
+           text_element(pixel_x(axes, x) + (left ? -4 : 4), kTop + 11 + 14 * line, left ? "note end" : "note", text);
 }
 
 }  // namespace seampath

@@ -47,8 +47,9 @@ std::string svg_box(const PlotAxes& axes, PlotPoint low, PlotPoint high, std::st
 /// A dot at each point.
 std::string svg_dots(const PlotAxes& axes, std::span<const PlotPoint> points, double radius_px, std::string_view style);
 
-/// A line across the whole plot at y, or at x, with a short text at its end.
+/// A line across the whole plot at y, or at x, with a short text at its end; `line` is the line of text it stands in,
+/// so that the texts of neighbouring marks don't cover each other.
 std::string svg_level(const PlotAxes& axes, double y, std::string_view text, std::string_view style);
-std::string svg_mark(const PlotAxes& axes, double x, std::string_view text, std::string_view style);
+std::string svg_mark(const PlotAxes& axes, double x, std::string_view text, std::string_view style, int line);
 
 }  // namespace seampath
