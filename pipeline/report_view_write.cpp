@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -17,7 +17,7 @@ constexpr float kSteps = 65535;
 
 /// The still picture: its size in CSS pixels, and how many points it shows of each cloud.
 constexpr double kWidth = 1200, kHeight = 640;
-constexpr std::size_t kStillPoints = 5000;
+constexpr std::size_t kStillPoints = 6000;
 
 /// Coordinates in the page: a tenth of a micrometre.
 double trimmed(double mm) {
@@ -81,7 +81,7 @@ struct Projection {
         : right(scene.camera.up.cross(scene.camera.toward)),
           up(scene.camera.up),
           toward(scene.camera.toward),
-          scale(0.42 * kHeight / scene.radius_mm) {}
+          scale(0.5 * kHeight / scene.radius_mm) {}
 
     Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
         return {kWidth / 2 + scale * right.dot(p), kHeight / 2 - scale * up.dot(p), toward.dot(p)};
@@ -108,8 +108,14 @@ std::string colour(const ViewScene& scene, const ViewSeam& seam, const ViewSampl
 std::string still_cloud(const ViewCloud& cloud, const Projection& project) {
     std::array<std::string, 4> paths;
     const Eigen::Vector3d light = (project.toward + 0.5 * project.up + 0.3 * project.right).normalized();
-    const std::size_t step = cloud.points.size() / kStillPoints + 1;
-    for (std::size_t i = 0; i < cloud.points.size(); i += step) {
+    const double share =
+        static_cast<double>(kStillPoints) / static_cast<double>(std::max(kStillPoints, cloud.points.size()));
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        // Multiples of the golden ratio, modulo one, are even and follow no raster.
+        const double turns = static_cast<double>(i) * std::numbers::phi;
+        if (turns - std::floor(turns) >= share) {
+            continue;
+        }
         const Eigen::Vector3d p = project(cloud.points[i].cast<double>());
         if (p.x() > 0 && p.x() < kWidth && p.y() > 0 && p.y() < kHeight) {
             const double shade = std::abs(cloud.normals[i].cast<double>().dot(light));

@@ -157,7 +157,7 @@
   }
 
   function torchRings(length) {
-    const colour = new THREE.Color('#c2571a');
+    const colour = new THREE.Color('#3d5068');
     return scene.torch.flatMap(([p, axis]) => {
       const tip = vector(p), along = vector(axis);
       const back = (share) => tip.clone().addScaledVector(along, -share * length);
