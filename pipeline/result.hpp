@@ -14,8 +14,8 @@ namespace seampath {
 struct StageTiming {
     std::string stage;
     double seconds = 0;
-    bool resumed = false;      ///< taken from an earlier run's artefact
-    std::string summary;       ///< what went in, what came out, the quality number
+    bool resumed = false;  ///< taken from an earlier run's artefact
+    std::string summary;   ///< what went in, what came out, the quality number
 };
 
 /// Everything that is known of one part after a run. `nodes`, `models` and `deviations` run parallel to
@@ -27,12 +27,12 @@ struct PartResult {
     std::vector<Nodes> nodes;
     std::vector<SeamModel> models;
     std::vector<Deviation> deviations;
-    std::vector<int> planned_seams;          ///< indices into models, in the order of Waypoint::seam
+    std::vector<int> planned_seams;  ///< indices into models, in the order of Waypoint::seam
     Plan plan;
     std::vector<ProgramFile> programs;
     std::vector<StageTiming> timings;
 
-    bool pass() const;                       ///< at least one seam, and all of them in tolerance
+    bool pass() const;  ///< at least one seam, and all of them in tolerance
 };
 
 }  // namespace seampath

@@ -1,0 +1,12 @@
+#include "pipeline/result.hpp"
+
+#include <algorithm>
+
+namespace seampath {
+
+bool PartResult::pass() const {
+    return !deviations.empty() &&
+           std::all_of(deviations.begin(), deviations.end(), [](const Deviation& deviation) { return deviation.pass; });
+}
+
+}  // namespace seampath

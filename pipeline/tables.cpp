@@ -1,0 +1,133 @@
+#include "pipeline/tables.hpp"
+
+#include <initializer_list>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/digest.hpp"
+#include "pipeline/text.hpp"
+
+namespace seampath {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void append(std::string& line, std::initializer_list<double> values) {
+    for (const double value : values) {
+        line += "," + number_text(value);
+    }
+}
+
+Json position_json(const Eigen::Vector3d& p) {
+    return {p.x(), p.y(), p.z()};
+}
+
+Json positions_json(const std::vector<Eigen::Vector3d>& points) {
+    Json list = Json::array();
+    for (const auto& p : points) {
+        list.push_back(position_json(p));
+    }
+    return list;
+}
+
+Json model_json(const SeamModel& model) {
+    return {{"type", "cubic_b_spline"},
+            {"periodic", model.curve.periodic},
+            {"knots_mm", model.curve.knots},
+            {"control_points_mm", positions_json(model.curve.control)},
+            {"residual_rms_mm", model.residual_rms_mm},
+            {"residual_max_mm", model.residual_max_mm},
+            {"degrees_of_freedom", model.degrees_of_freedom}};
+}
+
+Json nodes_json(const Nodes& nodes, const Seam& seam) {
+    Json positions = Json::array();
+    for (const std::size_t i : nodes.index) {
+        positions.push_back(position_json(seam.points.at(i).p));
+    }
+    return {{"count", nodes.index.size()},
+            {"max_chord_error_mm", nodes.max_chord_error_mm},
+            {"index", nodes.index},
+            {"positions_mm", std::move(positions)}};
+}
+
+Json deviation_json(const Deviation& deviation) {
+    return {{"signed_mean_mm", deviation.signed_mean_mm},
+            {"rms_mm", deviation.rms_mm},
+            {"p50_mm", deviation.p50_mm},
+            {"p95_mm", deviation.p95_mm},
+            {"p997_mm", deviation.p997_mm},
+            {"max_mm", deviation.max_mm},
+            {"coverage", deviation.coverage},
+            {"tolerance_mm", deviation.tolerance_mm},
+            {"pass", deviation.pass},
+            {"verdict", deviation.verdict}};
+}
+
+}  // namespace
+
+std::string seam_points_csv(const std::vector<Seam>& seams) {
+    std::string text = "seam,index,station_mm,x,y,z,n1x,n1y,n1z,n2x,n2y,n2z,sigma_mm\n";
+    for (std::size_t s = 0; s < seams.size(); ++s) {
+        const auto& points = seams[s].points;
+        double station_mm = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto& [p, n1, n2, sigma_mm, modelled] = points[i];
+            station_mm += i > 0 ? (p - points[i - 1].p).norm() : 0;
+            std::string line = std::to_string(s) + "," + std::to_string(i);
+            append(line, {station_mm, p.x(), p.y(), p.z(), n1.x(), n1.y(), n1.z(), n2.x(), n2.y(), n2.z(), sigma_mm});
+            text += line + "\n";
+        }
+    }
+    return text;
+}
+
+std::string waypoints_csv(const std::vector<Waypoint>& waypoints) {
+    std::string text =
+        "# frame: scan (right-handed); tool frame: +Z along the torch into the joint, +X along travel\n"
+        "# unit: mm, s, mm/s\n"
+        "# quaternion: qw,qx,qy,qz, scan_from_tool\n"
+        "seam,index,kind,station_mm,x,y,z,qw,qx,qy,qz,speed_mm_s,time_s,sigma_mm\n";
+    for (const auto& w : waypoints) {
+        std::string line = std::to_string(w.seam) + "," + std::to_string(w.index) + "," + std::string(name(w.kind));
+        append(line, {w.station_mm, w.p.x(), w.p.y(), w.p.z(), w.q.w(), w.q.x(), w.q.y(), w.q.z(), w.speed_mm_s,
+                      w.time_s, w.sigma_mm});
+        text += line + "\n";
+    }
+    return text;
+}
+
+std::string seams_json(const PartResult& part) {
+    Json seams = Json::array();
+    for (std::size_t i = 0; i < part.models.size(); ++i) {
+        const Seam& seam = part.extraction.seams.at(i);
+        seams.push_back({{"seam", i},
+                         {"kind", name(part.models[i].kind)},
+                         {"closed", part.models[i].closed},
+                         {"length_mm", part.models[i].length_mm},
+                         {"confidence", seam.confidence},
+                         {"points", seam.points.size()},
+                         {"model", model_json(part.models[i])},
+                         {"nodes", nodes_json(part.nodes.at(i), seam)},
+                         {"deviation", deviation_json(part.deviations.at(i))}});
+    }
+    return Json{{"frame", "scan"}, {"unit", "mm"}, {"seams", std::move(seams)}}.dump(1) + "\n";
+}
+
+std::string manifest_json(const std::vector<ProgramFile>& programs, const std::string& robot) {
+    Json files = Json::array();
+    for (const auto& program : programs) {
+        if (program.robot == robot) {
+            files.push_back({{"file", program.file_name},
+                             {"sha256", sha256(program.content)},
+                             {"bytes", program.content.size()},
+                             {"position_rounding_mm", program.position_rounding_mm},
+                             {"max_position_error_mm", program.max_position_error_mm},
+                             {"max_orientation_error_deg", program.max_orientation_error_deg},
+                             {"max_speed_error", program.max_speed_error}});
+        }
+    }
+    return Json{{"robot", robot}, {"files", std::move(files)}}.dump(4) + "\n";
+}
+
+}  // namespace seampath

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/result.hpp"
+
+/// The tables of a run folder that scripts read (README: files in a run folder).
+namespace seampath {
+
+/// Extracted points, scan frame, mm: seam,index,station_mm,x,y,z,n1x,...,sigma_mm. The station is along the polyline.
+std::string seam_points_csv(const std::vector<Seam>& seams);
+
+/// Torch poses: comment lines with frame, unit and quaternion order, then seam,index,kind,station_mm,x,...,sigma_mm.
+std::string waypoints_csv(const std::vector<Waypoint>& waypoints);
+
+/// Per seam: joint kind, closed or open, length, model, nodes, deviation.
+std::string seams_json(const PartResult& part);
+
+/// For each program file of one robot: its SHA-256, its rounding, and the largest errors found when it was read back.
+std::string manifest_json(const std::vector<ProgramFile>& programs, const std::string& robot);
+
+}  // namespace seampath

@@ -1,0 +1,78 @@
+#include <iostream>
+#include <memory>
+
+#include "datasets/dataset.hpp"
+#include "pipeline/config.hpp"
+#include "pipeline/text.hpp"
+#include "stages/error.hpp"
+#include "tools/commands.hpp"
+
+namespace seampath {
+namespace {
+
+struct Arguments {
+    std::string scene;
+    std::string preset = "standard";
+    std::uint64_t seed = 1;
+    std::string out;
+    std::vector<std::string> set;
+};
+
+SceneKind scene_kind(const std::string& scene) {
+    for (std::size_t i = 0; i < kSceneNames.size(); ++i) {
+        if (kSceneNames[i] == scene) {
+            return static_cast<SceneKind>(i);
+        }
+    }
+    throw InputError("dataset: \"" + scene + "\" is no scene; there are " + join(kSceneNames) +
+                     hint(scene, kSceneNames));
+}
+
+int make(const Arguments& given) {
+    SceneOptions scene;
+    scene.kind = scene_kind(given.scene);
+    ScannerOptions scanner = preset(given.preset);
+    std::vector<Override> overrides;
+    for (const auto& argument : given.set) {
+        overrides.push_back(parse_override(argument));
+    }
+    apply_overrides({{"scene", describe(scene)}, {"scanner", describe(scanner)}}, overrides);
+    const Dataset dataset = make_dataset(scene, scanner, given.seed);
+    write_dataset(dataset, given.out);
+    std::cout << given.out << "/scan.ply   " << dataset.points.size() << " points\n"
+              << given.out << "/truth.json " << dataset.truth.seams.size() << " seams\n";
+    return kPass;
+}
+
+int list() {
+    std::cout << "scenes:  " << join(kSceneNames) << "\npresets: " << join(kPresetNames) << "\n";
+    return kPass;
+}
+
+}  // namespace
+
+Command dataset_command(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("dataset", "scans with known truth");
+    app->require_subcommand(1);
+    app->footer(
+        "Examples:\n"
+        "  seampath dataset list\n"
+        "  seampath dataset make pipe-on-pipe --seed 3 --out data/pipe3\n"
+        "  seampath dataset make tee --preset metrology --set scene.lean_deg=20 --out data/tee\n");
+    const auto given = std::make_shared<Arguments>();
+    const CLI::App* list_app = app->add_subcommand("list", "scenes and scanner presets");
+    CLI::App* make_app = app->add_subcommand("make", "make a scan and its truth");
+    make_app->add_option("SCENE", given->scene, "scene: " + join(kSceneNames))->required();
+    make_app->add_option("--preset", given->preset, "scanner: " + join(kPresetNames))->capture_default_str();
+    make_app->add_option("--seed", given->seed, "everything random follows from it")->capture_default_str();
+    make_app->add_option("--out", given->out, "folder for scan.ply and truth.json")->required();
+    make_app->add_option("--set", given->set, "scene.key=value or scanner.key=value")->allow_extra_args(false);
+    make_app->footer(
+        "Examples:\n"
+        "  seampath dataset make tee --out data/tee\n"
+        "  seampath dataset make pipe-on-pipe --preset standard --seed 3 --out data/pipe3\n"
+        "  seampath dataset make tee --set scene.lean_deg=20 --set scanner.sigma_mm=0.1 --out data/tee20\n");
+    return {app, [given, list_app] { return list_app->parsed() ? list() : make(*given); }};
+}
+
+}  // namespace seampath
