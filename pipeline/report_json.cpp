@@ -1,0 +1,69 @@
+#include <nlohmann/json.hpp>
+
+#include "pipeline/report.hpp"
+#include "pipeline/report_rows.hpp"
+#include "pipeline/report_text.hpp"
+
+namespace seampath {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rows_json(const ReportRows& rows) {
+    Json list = Json::array();
+    for (const ReportRow& row : rows) {
+        Json value = std::visit([](const auto& v) { return Json(v); }, row.value);
+        list.push_back({{"name", row.name},
+                        {"value", std::move(value)},
+                        {"unit", row.unit},
+                        {"verdict", row.verdict.empty() ? Json() : Json(row.verdict)}});
+    }
+    return list;
+}
+
+Json verdict_json(bool pass) {
+    return pass ? "pass" : "fail";
+}
+
+Json timings_json(const std::vector<StageTiming>& timings) {
+    Json list = Json::array();
+    for (const StageTiming& timing : timings) {
+        list.push_back({{"stage", timing.stage},
+                        {"seconds", timing.seconds},
+                        {"resumed", timing.resumed},
+                        {"summary", valid_utf8(timing.summary)}});
+    }
+    return list;
+}
+
+Json seams_json(const std::vector<ReportSeam>& seams) {
+    Json list = Json::array();
+    for (const ReportSeam& seam : seams) {
+        list.push_back({{"seam", list.size()},
+                        {"verdict", verdict_json(seam.pass)},
+                        {"sentence", seam.sentence},
+                        {"rows", rows_json(seam.rows)}});
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string report_json(const PartResult& part) {
+    const Report report = report_of(part);
+    Json programs = Json::array();
+    for (const ReportProgram& program : report.programs) {
+        programs.push_back({{"robot", program.robot}, {"file", program.file}, {"rows", rows_json(program.rows)}});
+    }
+    const Json json{{"part", report.part},
+                    {"verdict", verdict_json(report.pass)},
+                    {"sentence", report.sentence},
+                    {"rows", rows_json(report.rows)},
+                    {"scan", {{"rows", rows_json(report.scan)}, {"remarks", report.remarks}}},
+                    {"seams", seams_json(report.seams)},
+                    {"programs", std::move(programs)},
+                    {"timings", timings_json(report.timings)}};
+    return json.dump(2) + '\n';
+}
+
+}  // namespace seampath

@@ -1,0 +1,204 @@
+#include "pipeline/report_plots.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "pipeline/report_text.hpp"
+#include "pipeline/svg.hpp"
+#include "stages/geometry/bspline.hpp"
+
+namespace seampath {
+namespace {
+
+constexpr double kWide = 1180, kWideHeight = 250, kNarrow = 390, kNarrowHeight = 220;
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+constexpr int kCurvatureSamples = 600;
+constexpr int kBins = 40;
+
+/// Bends wider than 1 m look straight.
+constexpr double kLeastCurvature = 1e-3;
+
+/// A tolerance so many times larger than all that was measured would flatten the plot; it is then only named.
+constexpr double kToleranceInSight = 6;
+
+std::string figure(const std::string& style, const std::string& caption, const std::string& svg) {
+    return "<figure class=\"" + style + "\"><figcaption>" + caption + "</figcaption>" + svg + "</figure>\n";
+}
+
+double padded(double most, double least) {
+    return 1.12 * std::max(most, least);
+}
+
+/// The deviation of every sample; NaN where it was not checked.
+struct DeviationLines {
+    std::vector<PlotPoint> distance, low, high, flank1, flank2;
+    double most = 0;  ///< largest absolute value of all of them, mm
+};
+
+DeviationLines deviation_lines(const Deviation& deviation) {
+    DeviationLines lines;
+    for (const DeviationSample& s : deviation.samples) {
+        const double on = s.covered ? 0 : kGap;
+        lines.distance.push_back({s.station_mm, s.distance_mm + on});
+        lines.low.push_back({s.station_mm, s.distance_mm - s.sigma_mm + on});
+        lines.high.push_back({s.station_mm, s.distance_mm + s.sigma_mm + on});
+        lines.flank1.push_back({s.station_mm, s.flank1_mm + on});
+        lines.flank2.push_back({s.station_mm, s.flank2_mm + on});
+        if (s.covered) {
+            lines.most =
+                std::max({lines.most, s.distance_mm + s.sigma_mm, std::abs(s.flank1_mm), std::abs(s.flank2_mm)});
+        }
+    }
+    return lines;
+}
+
+/// Grey boxes over the runs of samples that were not checked against the scan.
+std::string unchecked_boxes(const PlotAxes& axes, const Deviation& deviation) {
+    const auto& samples = deviation.samples;
+    std::string svg;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t first = i;
+        while (i < samples.size() && !samples[i].covered) {
+            ++i;
+        }
+        if (i > first) {
+            svg += svg_box(axes, {samples[first].station_mm, axes.y_low}, {samples[i - 1].station_mm, axes.y_high},
+                           "unchecked");
+        }
+    }
+    return svg;
+}
+
+std::string deviation_plot(const Deviation& deviation, double length_mm) {
+    const DeviationLines lines = deviation_lines(deviation);
+    const double tolerance = deviation.tolerance_mm;
+    const bool in_sight = tolerance > 0 && tolerance < kToleranceInSight * lines.most;
+    const double reach = padded(in_sight ? std::max(tolerance, lines.most) : lines.most, 1e-4);
+    const PlotAxes axes{kWide, kWideHeight, 0, length_mm, -reach, reach, "station along the seam, mm", "deviation, mm"};
+    std::string svg = svg_axes(axes, "Deviation of the seam from the scan, along the seam");
+    if (in_sight) {
+        svg += svg_box(axes, {0, -tolerance}, {length_mm, tolerance}, "inside");
+    }
+    svg += unchecked_boxes(axes, deviation) + svg_band(axes, lines.low, lines.high, "sigma") +
+           svg_line(axes, lines.flank1, "flank1") + svg_line(axes, lines.flank2, "flank2") +
+           svg_line(axes, lines.distance, "value");
+    if (in_sight) {
+        svg += svg_level(axes, tolerance, "tolerance " + decimal(tolerance, 3) + " mm", "limit") +
+               svg_level(axes, -tolerance, "", "limit");
+    }
+    const std::string beyond =
+        in_sight ? "" : " The tolerance, " + decimal(tolerance, 3) + " mm, lies outside the plot.";
+    return figure(
+        "wide",
+        "<b>Deviation from the scan</b> <i style=\"background:#16324f\"></i>distance to the line in which the scanned "
+        "flanks meet, with ±1σ <i style=\"background:#c2571a\"></i>to flank 1 "
+        "<i style=\"background:#2c8a8a\"></i>to flank 2 (+ outside the material)" +
+            beyond,
+        svg + svg_end());
+}
+
+std::string histogram(const Deviation& deviation) {
+    std::vector<double> distances;
+    for (const DeviationSample& s : deviation.samples) {
+        if (s.covered) {
+            distances.push_back(s.distance_mm);
+        }
+    }
+    const double tolerance = deviation.tolerance_mm;
+    const double most = distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
+    const bool in_sight = tolerance > 0 && tolerance < kToleranceInSight * most;
+    const double reach = padded(in_sight ? std::max(tolerance, most) : most, 1e-4);
+    std::vector<double> share(kBins, 0);
+    for (const double d : distances) {
+        const auto bin = std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(kBins * std::max(0.0, d) / reach));
+        share[bin] += 100.0 / static_cast<double>(distances.size());
+    }
+    const double top = padded(*std::max_element(share.begin(), share.end()), 1);
+    const PlotAxes axes{kNarrow, kNarrowHeight, 0, reach, 0, top, "deviation, mm", "share of samples, %"};
+    std::string svg = svg_axes(axes, "Histogram of the deviation");
+    for (int k = 0; k < kBins; ++k) {
+        const double low = reach * k / kBins, high = reach * (k + 1) / kBins;
+        svg += svg_box(axes, {low, 0}, {high, share[static_cast<std::size_t>(k)]},
+                       low >= tolerance ? "bar beyond" : "bar");
+    }
+    svg += svg_mark(axes, deviation.p95_mm, "p95", "quantile", 0);
+    if (in_sight) {
+        svg += svg_mark(axes, tolerance, "tolerance", "limit", 1);
+    }
+    return figure("", "<b>How often which deviation</b>", svg + svg_end());
+}
+
+std::string curvature_plot(const SeamModel& model, const Seam& seam, const Nodes& nodes) {
+    const ArcLength arc(model.curve);
+    std::vector<PlotPoint> line, dots;
+    double most = 0;
+    for (int k = 0; k <= kCurvatureSamples; ++k) {
+        const double station = arc.length() * k / kCurvatureSamples;
+        line.push_back({station, curvature(model.curve, arc.parameter(station))});
+        most = std::max(most, line.back().y);
+    }
+    for (const std::size_t node : nodes.index) {
+        const double u = nearest_parameter(model.curve, seam.points[node].p);
+        dots.push_back({arc.station(u), curvature(model.curve, u)});
+    }
+    const PlotAxes axes{kNarrow,       kNarrowHeight,    0, arc.length(), 0, padded(most, kLeastCurvature),
+                        "station, mm", "curvature, 1/mm"};
+    return figure("", "<b>Curvature</b> and the nodes that carry the shape",
+                  svg_axes(axes, "Curvature of the seam with its nodes") + svg_line(axes, line, "value") +
+                      svg_dots(axes, dots, 3, "node") + svg_end());
+}
+
+/// Speed between neighbouring weld poses; empty when no torch path was planned for the seam.
+std::vector<PlotPoint> torch_speeds(const PartResult& part, std::size_t seam) {
+    const auto planned = std::find(part.planned_seams.begin(), part.planned_seams.end(), static_cast<int>(seam));
+    if (planned == part.planned_seams.end()) {
+        return {};
+    }
+    const auto number = static_cast<int>(planned - part.planned_seams.begin());
+    std::vector<PlotPoint> speeds;
+    const Waypoint* before = nullptr;
+    for (const Waypoint& w : part.plan.waypoints) {
+        const bool welding =
+            w.kind == WaypointKind::weld_start || w.kind == WaypointKind::weld || w.kind == WaypointKind::weld_end;
+        if (w.seam != number || !welding) {
+            continue;
+        }
+        if (before != nullptr && w.time_s > before->time_s) {
+            const double speed = (w.p - before->p).norm() / (w.time_s - before->time_s);
+            speeds.push_back({before->station_mm, speed});
+            speeds.push_back({w.station_mm, speed});
+        }
+        before = &w;
+    }
+    return speeds;
+}
+
+std::string speed_plot(const PartResult& part, std::size_t seam) {
+    const std::vector<PlotPoint> speeds = torch_speeds(part, seam);
+    if (speeds.empty()) {
+        return figure("", "<b>Torch speed</b> – no torch path was planned for this seam", "");
+    }
+    const double wanted = part.config.plan.speed_mm_s;
+    double most = wanted;
+    for (const PlotPoint& p : speeds) {
+        most = std::max(most, p.y);
+    }
+    const PlotAxes axes{kNarrow,       kNarrowHeight, 0, part.models[seam].length_mm, 0, padded(most, 1e-3),
+                        "station, mm", "speed, mm/s"};
+    return figure("", "<b>Torch speed</b> of the straight moves, " + decimal(wanted, 1) + " mm/s asked for",
+                  svg_axes(axes, "Torch speed along the seam") + svg_level(axes, wanted, "", "quantile") +
+                      svg_line(axes, speeds, "value") + svg_end());
+}
+
+}  // namespace
+
+std::string seam_plots(const PartResult& part, std::size_t seam) {
+    const SeamModel& model = part.models[seam];
+    return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], std::max(model.length_mm, 1e-3)) +
+           histogram(part.deviations[seam]) + curvature_plot(model, part.extraction.seams[seam], part.nodes[seam]) +
+           speed_plot(part, seam) + "</div>\n";
+}
+
+}  // namespace seampath

@@ -1,0 +1,284 @@
+#include "pipeline/report_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/fields.hpp"
+#include "pipeline/report_text.hpp"
+#include "pipeline/text.hpp"
+#include "stages/error.hpp"
+#include "stages/geometry/bspline.hpp"
+
+namespace seampath {
+namespace {
+
+/// What a program file may differ from the plan beyond its own rounding: the mathematics of turning poses there and
+/// back.
+constexpr double kReadBackMarginMm = 1e-6;
+
+/// Stations at which the curvature of a seam is looked at.
+constexpr int kCurvatureStations = 1000;
+
+ReportRow number(std::string name, std::string label, double value, std::string unit, int decimals = 3) {
+    return {std::move(name), std::move(label), value, std::move(unit), "", decimals};
+}
+
+ReportRow count(std::string name, std::string label, std::size_t value) {
+    return {std::move(name), std::move(label), static_cast<std::int64_t>(value), "", "", 0};
+}
+
+ReportRow fact(std::string name, std::string label, std::string value) {
+    return {std::move(name), std::move(label), valid_utf8(value), "", "", 0};
+}
+
+ReportRow judged(ReportRow row, bool pass) {
+    row.verdict = pass ? "pass" : "fail";
+    return row;
+}
+
+/// Length of the polyline through a seam's points over which they were bridged rather than measured.
+double modelled_length(const Seam& seam) {
+    double length = 0;
+    const std::size_t n = seam.points.size();
+    for (std::size_t i = 0; i + (seam.closed ? 0 : 1) < n; ++i) {
+        const SeamPoint& a = seam.points[i];
+        const SeamPoint& b = seam.points[(i + 1) % n];
+        length += a.modelled || b.modelled ? (b.p - a.p).norm() : 0;
+    }
+    return length;
+}
+
+double max_curvature(const CubicBSpline& curve) {
+    double most = 0;
+    const double first = first_parameter(curve), last = last_parameter(curve);
+    for (int i = 0; i <= kCurvatureStations; ++i) {
+        most = std::max(most, curvature(curve, first + (last - first) * i / kCurvatureStations));
+    }
+    return most;
+}
+
+double median_sigma(const Seam& seam) {
+    std::vector<double> sigma;
+    std::transform(seam.points.begin(), seam.points.end(), std::back_inserter(sigma),
+                   [](const SeamPoint& p) { return p.sigma_mm; });
+    if (sigma.empty()) {
+        return 0;
+    }
+    const auto middle = sigma.begin() + static_cast<std::ptrdiff_t>(sigma.size() / 2);
+    std::nth_element(sigma.begin(), middle, sigma.end());
+    return *middle;
+}
+
+double max_sigma(const Seam& seam) {
+    double most = 0;
+    for (const SeamPoint& p : seam.points) {
+        most = std::max(most, p.sigma_mm);
+    }
+    return most;
+}
+
+ReportSeam seam_report(const PartResult& part, std::size_t i) {
+    const Seam& seam = part.extraction.seams[i];
+    const SeamModel& model = part.models[i];
+    const Deviation& deviation = part.deviations[i];
+    const bool planned = std::find(part.planned_seams.begin(), part.planned_seams.end(), static_cast<int>(i)) !=
+                         part.planned_seams.end();
+    return {
+        deviation.pass,
+        valid_utf8(deviation.verdict),
+        {
+            fact("kind", "Joint", std::string(name(model.kind))),
+            {"closed", "Closed", model.closed, "", "", 0},
+            number("confidence", "Confidence of detection", seam.confidence, "", 2),
+            number("length_mm", "Length", model.length_mm, "mm"),
+            number("modelled_length_mm", "Bridged by model", modelled_length(seam), "mm"),
+            count("points", "Extracted points", seam.points.size()),
+            number("sigma_median_mm", "Uncertainty of a point, median 1σ", median_sigma(seam), "mm"),
+            number("sigma_max_mm", "Uncertainty of a point, largest 1σ", max_sigma(seam), "mm"),
+            count("nodes", "Nodes", part.nodes[i].index.size()),
+            number("node_chord_error_mm", "Largest chord error between nodes", part.nodes[i].max_chord_error_mm, "mm"),
+            number("residual_rms_mm", "Points from fitted curve, rms", model.residual_rms_mm, "mm"),
+            number("residual_max_mm", "Points from fitted curve, largest", model.residual_max_mm, "mm"),
+            number("degrees_of_freedom", "Free coefficients of the fit", model.degrees_of_freedom, "", 0),
+            number("max_curvature_per_mm", "Largest curvature", max_curvature(model.curve), "1/mm", 4),
+            number("deviation_signed_mean_mm", "Deviation, signed mean", deviation.signed_mean_mm, "mm"),
+            number("deviation_rms_mm", "Deviation, rms", deviation.rms_mm, "mm"),
+            number("deviation_p50_mm", "Deviation, p50", deviation.p50_mm, "mm"),
+            number("deviation_p95_mm", "Deviation, p95", deviation.p95_mm, "mm"),
+            number("deviation_p997_mm", "Deviation, p99.7", deviation.p997_mm, "mm"),
+            number("deviation_max_mm", "Deviation, largest", deviation.max_mm, "mm"),
+            judged(number("coverage_percent", "Checked on scan", 100 * deviation.coverage, "%", 1),
+                   deviation.coverage >= part.config.validate.min_coverage),
+            number("tolerance_mm", "Tolerance", deviation.tolerance_mm, "mm"),
+            judged(fact("in_tolerance", "In tolerance", deviation.pass ? "yes" : "no"), deviation.pass),
+            {"planned", "Torch path planned", planned, "", "", 0},
+        }};
+}
+
+ReportProgram program_report(const ProgramFile& file) {
+    // Half a unit of the last place on each of three axes.
+    const double allowed = std::sqrt(3.0) * file.position_rounding_mm + kReadBackMarginMm;
+    return {valid_utf8(file.robot),
+            valid_utf8(file.file_name),
+            {
+                count("bytes", "Size, bytes", file.content.size()),
+                number("position_rounding_mm", "Rounding of a coordinate", file.position_rounding_mm, "mm", 6),
+                judged(number("max_position_error_mm", "Position, read back", file.max_position_error_mm, "mm", 6),
+                       file.max_position_error_mm <= allowed),
+                number("max_orientation_error_deg", "Orientation, read back", file.max_orientation_error_deg, "°", 6),
+                number("max_speed_error_percent", "Speed, read back", 100 * file.max_speed_error, "%", 4),
+            }};
+}
+
+ReportRows scan_rows(const PartResult& part) {
+    const Scan& scan = part.scan;
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& p : scan.points) {
+        box.extend(p);
+    }
+    const Eigen::Vector3f size = box.isEmpty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f(box.sizes());
+    const std::string raster =
+        scan.width == 0 ? "unorganised" : std::to_string(scan.width) + " × " + std::to_string(scan.height);
+    return {
+        fact("format", "Format", scan.format),
+        fact("raster", "Raster", raster),
+        count("points_in_file", "Points in the file", scan.points_in_file),
+        count("dropped_not_finite", "Dropped, not finite", scan.dropped_not_finite),
+        count("points", "Points used", scan.points.size()),
+        number("mm_per_unit", "Millimetres per unit of the file", scan.mm_per_unit, "mm", 4),
+        fact("unit_reason", "Why that unit", scan.unit_reason),
+        number("size_x_mm", "Extent in x", static_cast<double>(size.x()), "mm", 1),
+        number("size_y_mm", "Extent in y", static_cast<double>(size.y()), "mm", 1),
+        number("size_z_mm", "Extent in z", static_cast<double>(size.z()), "mm", 1),
+        number("spacing_mm", "Typical point distance", part.extraction.spacing_mm, "mm"),
+        number("noise_mm", "Noise, rms about the surfaces", part.extraction.noise_mm, "mm"),
+        fact("orientation_reason", "How the side of the air was told", part.extraction.orientation_reason),
+    };
+}
+
+ReportRows part_rows(const PartResult& part) {
+    double length = 0, modelled = 0, rms_square = 0, worst = 0, checked = 0, read_back = 0;
+    std::size_t in_tolerance = 0;
+    for (std::size_t i = 0; i < part.models.size(); ++i) {
+        const Deviation& deviation = part.deviations[i];
+        length += part.models[i].length_mm;
+        modelled += modelled_length(part.extraction.seams[i]);
+        const double covered = part.models[i].length_mm * deviation.coverage;
+        checked += covered;
+        rms_square += covered * deviation.rms_mm * deviation.rms_mm;
+        worst = std::max(worst, deviation.max_mm);
+        in_tolerance += deviation.pass ? 1 : 0;
+    }
+    for (const ProgramFile& file : part.programs) {
+        read_back = std::max(read_back, file.max_position_error_mm);
+    }
+    return {
+        judged(count("seams", "Seams found", part.models.size()), !part.models.empty()),
+        judged(count("seams_in_tolerance", "Seams in tolerance", in_tolerance), part.pass()),
+        number("length_mm", "Seam length", length, "mm"),
+        number("modelled_length_mm", "Bridged by model", modelled, "mm"),
+        number("deviation_rms_mm", "Deviation, rms", checked > 0 ? std::sqrt(rms_square / checked) : 0, "mm"),
+        number("deviation_max_mm", "Deviation, largest", worst, "mm"),
+        number("coverage_percent", "Checked on scan", length > 0 ? 100 * checked / length : 0, "%", 1),
+        count("waypoints", "Waypoints", part.plan.waypoints.size()),
+        number("path_chord_error_mm", "Straight moves from the curve, largest", part.plan.max_chord_error_mm, "mm"),
+        number("max_speed_error_percent", "Torch speed error, largest", 100 * part.plan.max_speed_error, "%", 2),
+        number("max_turn_deg", "Torch rotation per move, largest", part.plan.max_turn_deg, "°", 2),
+        number("duration_s", "Path duration", part.plan.duration_s, "s", 1),
+        count("programs", "Program files", part.programs.size()),
+        number("read_back_error_mm", "Program position error, largest", read_back, "mm", 6),
+    };
+}
+
+std::string json_text(const Field& field) {
+    return field_json(field).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::vector<ReportSetting> settings_of(const Config& config) {
+    Config chosen = config, defaults;
+    const auto sections = describe(chosen), default_sections = describe(defaults);
+    std::vector<ReportSetting> settings;
+    for (std::size_t s = 0; s < sections.size(); ++s) {
+        for (std::size_t f = 0; f < sections[s].fields.size(); ++f) {
+            const Field& field = sections[s].fields[f];
+            const std::string value = json_text(field), default_value = json_text(default_sections[s].fields[f]);
+            settings.push_back({std::string(sections[s].stage) + '.' + std::string(field.key), value, default_value,
+                                std::string(field.meaning), value != default_value});
+        }
+    }
+    return settings;
+}
+
+std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
+    if (part.models.empty()) {
+        return "No seam was found in this scan";
+    }
+    const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
+    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces";
+}
+
+}  // namespace
+
+Report report_of(const PartResult& part) {
+    ensure(part.extraction.seams.size() == part.models.size() && part.nodes.size() == part.models.size() &&
+               part.deviations.size() == part.models.size(),
+           "every seam of a report has nodes, model and deviation");
+    Report report;
+    report.part = valid_utf8(part.scan.name);
+    report.pass = part.pass();
+    report.rows = part_rows(part);
+    report.scan = scan_rows(part);
+    for (const std::string& remark : part.extraction.remarks) {
+        report.remarks.push_back(valid_utf8(remark));
+    }
+    for (std::size_t i = 0; i < part.models.size(); ++i) {
+        report.seams.push_back(seam_report(part, i));
+    }
+    const auto passed = std::count_if(report.seams.begin(), report.seams.end(), [](const auto& s) { return s.pass; });
+    report.sentence = part_sentence(part, static_cast<std::size_t>(passed));
+    std::transform(part.programs.begin(), part.programs.end(), std::back_inserter(report.programs), program_report);
+    report.settings = settings_of(part.config);
+    report.timings = part.timings;
+    return report;
+}
+
+const ReportRow& find_row(const ReportRows& rows, std::string_view name) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [&](const ReportRow& r) { return r.name == name; });
+    ensure(found != rows.end(), "a report shows only rows that it has");
+    return *found;
+}
+
+std::string shown(const ReportRow& row) {
+    if (const auto* yes = std::get_if<bool>(&row.value)) {
+        return *yes ? "yes" : "no";
+    }
+    if (const auto* whole = std::get_if<std::int64_t>(&row.value)) {
+        return grouped(*whole);
+    }
+    if (const auto* text = std::get_if<std::string>(&row.value)) {
+        return *text;
+    }
+    const double value = std::get<double>(row.value);
+    const double unit_of_last_place = std::pow(10.0, -row.decimals);
+    const bool vanishes = value != 0 && std::abs(value) < 0.5 * unit_of_last_place;
+    return vanishes ? '<' + decimal(unit_of_last_place, row.decimals) : decimal(value, row.decimals);
+}
+
+std::string exact(const ReportRow& row) {
+    if (const auto* yes = std::get_if<bool>(&row.value)) {
+        return *yes ? "true" : "false";
+    }
+    if (const auto* whole = std::get_if<std::int64_t>(&row.value)) {
+        return std::to_string(*whole);
+    }
+    if (const auto* text = std::get_if<std::string>(&row.value)) {
+        return *text;
+    }
+    const double value = std::get<double>(row.value);
+    return std::isfinite(value) ? number_text(value) : "null";
+}
+
+}  // namespace seampath

@@ -1,0 +1,131 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/report.hpp"
+#include "stages/error.hpp"
+#include "tests/report/example_part.hpp"
+
+namespace seampath::test {
+namespace {
+
+using Json = nlohmann::json;
+using testing::Contains;
+using testing::EndsWith;
+
+Json report_of_example(bool pass = true) {
+    return Json::parse(report_json(example_part(pass)));
+}
+
+Json find(const Json& rows, const std::string& name) {
+    for (const Json& row : rows) {
+        if (row.at("name") == name) {
+            return row;
+        }
+    }
+    ADD_FAILURE() << "no row " << name;
+    return {};
+}
+
+TEST(ReportJson, GivesTheVerdictOfThePartAndOfEachSeam) {
+    const Json passed = report_of_example(), failed = report_of_example(false);
+    EXPECT_EQ(passed.at("verdict"), "pass");
+    EXPECT_EQ(failed.at("verdict"), "fail");
+    EXPECT_EQ(failed.at("seams")[0].at("verdict"), "pass");
+    EXPECT_EQ(failed.at("seams")[1].at("verdict"), "fail");
+    EXPECT_EQ(failed.at("sentence"), "1 of 2 seams within tolerance of the scanned surfaces");
+    EXPECT_EQ(find(failed.at("rows"), "seams_in_tolerance").at("verdict"), "fail");
+    EXPECT_EQ(find(failed.at("seams")[1].at("rows"), "in_tolerance").at("verdict"), "fail");
+}
+
+TEST(ReportJson, EveryRowHasNameValueUnitAndVerdictAndNamesThatEndInTheUnit) {
+    const Json report = report_of_example();
+    const std::map<std::string, std::string> suffix{
+        {"mm", "_mm"}, {"°", "_deg"}, {"s", "_s"}, {"%", "_percent"}, {"1/mm", "_per_mm"}};
+    std::vector<Json> lists{report.at("rows"), report.at("scan").at("rows")};
+    for (const char* group : {"seams", "programs"}) {
+        for (const Json& entry : report.at(group)) {
+            lists.push_back(entry.at("rows"));
+        }
+    }
+    std::size_t with_unit = 0;
+    for (const Json& rows : lists) {
+        std::set<std::string> names;
+        for (const Json& row : rows) {
+            EXPECT_EQ(row.size(), 4U) << row;
+            EXPECT_TRUE(names.insert(row.at("name")).second) << row;
+            const std::string unit = row.at("unit");
+            if (!unit.empty() && row.at("name") != "mm_per_unit") {
+                EXPECT_THAT(row.at("name").get<std::string>(), EndsWith(suffix.at(unit))) << row;
+                ++with_unit;
+            }
+        }
+    }
+    EXPECT_GT(with_unit, 40U);
+}
+
+TEST(ReportJson, TakesItsNumbersFromTheResultUnrounded) {
+    const PartResult part = example_part();
+    const Json report = Json::parse(report_json(part));
+    const Json& rows = report.at("seams")[0].at("rows");
+    EXPECT_EQ(find(rows, "deviation_signed_mean_mm").at("value"), -0.0012345678);
+    EXPECT_EQ(find(rows, "deviation_max_mm").at("value"), part.deviations[0].max_mm);
+    EXPECT_EQ(find(rows, "length_mm").at("value"), part.models[0].length_mm);
+    EXPECT_EQ(find(rows, "nodes").at("value"), 30);
+    EXPECT_EQ(find(rows, "closed").at("value"), true);
+    EXPECT_EQ(find(report.at("rows"), "duration_s").at("value"), part.plan.duration_s);
+    EXPECT_EQ(find(report.at("scan").at("rows"), "dropped_not_finite").at("value"), 17);
+    EXPECT_EQ(report.at("timings")[1].at("resumed"), true);
+}
+
+// 360 points on a circle of radius 30; 13 of them in a row are bridged, so 14 chords touch one of them.
+TEST(ReportJson, MeasuresTheBridgedLength) {
+    const double chord = 2 * 30 * std::sin(std::acos(-1.0) / 360);
+    const Json report = report_of_example();
+    EXPECT_NEAR(find(report.at("seams")[0].at("rows"), "modelled_length_mm").at("value").get<double>(), 14 * chord,
+                1e-9);
+    EXPECT_EQ(find(report.at("seams")[1].at("rows"), "modelled_length_mm").at("value"), 0);
+    EXPECT_NEAR(find(report.at("seams")[0].at("rows"), "max_curvature_per_mm").at("value").get<double>(), 1 / 30.0,
+                2e-4);
+}
+
+TEST(ReportJson, JudgesCoverageAndReadBackErrors) {
+    PartResult part = example_part();
+    part.config.validate.min_coverage = 0.99;
+    part.programs[0].max_position_error_mm = 0.002;
+    const Json report = Json::parse(report_json(part));
+    EXPECT_EQ(find(report.at("seams")[0].at("rows"), "coverage_percent").at("verdict"), "fail");
+    EXPECT_EQ(find(report.at("seams")[1].at("rows"), "coverage_percent").at("verdict"), "pass");
+    EXPECT_EQ(find(report.at("programs")[0].at("rows"), "max_position_error_mm").at("verdict"), "fail");
+    EXPECT_EQ(find(report.at("programs")[1].at("rows"), "max_position_error_mm").at("verdict"), "pass");
+}
+
+TEST(ReportJson, SaysSoWhenNothingWasFound) {
+    const Json report = Json::parse(report_json(part_without_seams()));
+    EXPECT_EQ(report.at("verdict"), "fail");
+    EXPECT_EQ(report.at("sentence"), "No seam was found in this scan");
+    EXPECT_TRUE(report.at("seams").empty());
+    EXPECT_THAT(report.at("scan").at("remarks"), Contains("only one surface was found"));
+}
+
+TEST(ReportJson, WritesNumbersThatAreNotFiniteAsNullAndRepairsNames) {
+    PartResult part = example_part();
+    part.scan.name = "caf\xe9 \xe2\x82";
+    part.deviations[0].max_mm = std::nan("");
+    const Json report = Json::parse(report_json(part));
+    EXPECT_EQ(report.at("part"), "caf\uFFFD \uFFFD\uFFFD");
+    EXPECT_TRUE(find(report.at("seams")[0].at("rows"), "deviation_max_mm").at("value").is_null());
+}
+
+TEST(ReportJson, IsTheSameTwice) {
+    EXPECT_EQ(report_json(example_part()), report_json(example_part()));
+}
+
+TEST(ReportJson, RefusesASeamWithoutDeviation) {
+    PartResult part = example_part();
+    part.deviations.pop_back();
+    EXPECT_THROW(report_json(part), InternalError);
+}
+
+}  // namespace
+}  // namespace seampath::test
