@@ -1,0 +1,236 @@
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "stages/export/text.hpp"
+
+/// Reads RAPID modules as a controller would: data declarations, procedures, and from main on the calls and moves.
+/// Knows of the language what a program of moves may hold; anything else is an error.
+namespace seampath::exporting {
+namespace {
+
+// A literal, an aggregate in brackets or the name of data.
+struct Value {
+    double number = std::numeric_limits<double>::quiet_NaN();
+    std::string name;
+    std::vector<Value> items;
+};
+
+struct Instruction {
+    std::string name;
+    std::vector<Value> arguments;
+    std::map<std::string, Value> options;  // \Name and \Name:=value
+    Scanner place;                         // behind it, for messages
+};
+
+struct Module {
+    std::map<std::string, Value> data;
+    std::map<std::string, std::vector<Instruction>> procedures;
+};
+
+constexpr std::size_t kLongestName = 32;
+
+// Names are not case-sensitive.
+std::string identifier(Scanner& scan) {
+    const std::string name = lower(scan.name());
+    if (!is_identifier(name) || name.size() > kLongestName) {
+        scan.fail("an identifier of at most 32 letters, digits and underscores before this place");
+    }
+    return name;
+}
+
+void require_word(Scanner& scan, const std::string& word) {
+    if (identifier(scan) != word) {
+        scan.fail(word + " before this place");
+    }
+}
+
+Value value(Scanner& scan) {
+    Value result;
+    if (scan.accept('[')) {
+        do {
+            result.items.push_back(value(scan));
+        } while (scan.accept(','));
+        scan.expect(']');
+    } else if (scan.at_name()) {
+        result.name = identifier(scan);
+    } else {
+        result.number = scan.number();
+    }
+    return result;
+}
+
+Instruction instruction(Scanner& scan, std::string name) {
+    Instruction result{std::move(name), {}, {}, scan};
+    bool separated = true;
+    while (!scan.accept(';')) {
+        if (scan.accept('\\')) {
+            const std::string option = identifier(scan);
+            result.options[option] = scan.accept(":=") ? value(scan) : Value{};
+        } else if (separated || scan.accept(',')) {
+            result.arguments.push_back(value(scan));
+        } else {
+            scan.fail("',', '\\' or ';'");
+        }
+        separated = false;
+    }
+    result.place = scan;
+    return result;
+}
+
+std::vector<Instruction> procedure(Scanner& scan) {
+    scan.expect('(');
+    scan.expect(')');
+    std::vector<Instruction> body;
+    for (std::string word = identifier(scan); word != "endproc"; word = identifier(scan)) {
+        body.push_back(instruction(scan, word));
+    }
+    return body;
+}
+
+Module module(const TextFile& file) {
+    Scanner scan(file, '!');
+    require_word(scan, "module");
+    identifier(scan);
+    Module result;
+    for (std::string word = identifier(scan); word != "endmodule"; word = identifier(scan)) {
+        if (word == "local" || word == "task") {
+            word = identifier(scan);
+        }
+        if (word == "proc") {
+            const std::string name = identifier(scan);
+            result.procedures[name] = procedure(scan);
+        } else if (word == "const" || word == "pers" || word == "var") {
+            identifier(scan);  // the type; what the data is used for tells it as well
+            const std::string name = identifier(scan);
+            if (!scan.accept(":=")) {
+                scan.fail("':='");
+            }
+            result.data[name] = value(scan);
+            scan.expect(';');
+        } else {
+            scan.fail("a declaration or a procedure before this place");
+        }
+    }
+    if (!scan.done()) {
+        scan.fail("the end of the file");
+    }
+    return result;
+}
+
+class Controller {
+public:
+    explicit Controller(const std::vector<TextFile>& files) {
+        for (const TextFile& file : files) {
+            modules_.push_back(module(file));
+        }
+        const Scanner start(files.at(0), '!');
+        call("main", start, 0);
+        require(!welding_, start, "ArcLEnd at the end of the program");
+    }
+    std::vector<Waypoint> waypoints;
+
+private:
+    static void require(bool holds, const Scanner& place, const std::string& needed) {
+        if (!holds) {
+            place.fail(needed + " before this place");
+        }
+    }
+
+    void call(const std::string& name, const Scanner& place, int depth) {
+        require(depth < 10, place, "a call that is not of itself");
+        for (const Module& m : modules_) {
+            if (const auto found = m.procedures.find(name); found != m.procedures.end()) {
+                for (const Instruction& i : found->second) {
+                    execute(i, m, depth);
+                }
+                return;
+            }
+        }
+        place.fail("a procedure " + name);
+    }
+
+    void execute(const Instruction& i, const Module& m, int depth) {
+        if (i.name == "confl" || i.name == "confj") {
+            require(i.options.contains("off"), i.place, "\\Off");
+            (i.name == "confl" ? linear_free_ : joint_free_) = true;
+        } else if (i.name == "movel" || i.name == "movej") {
+            require(!welding_, i.place, "ArcLEnd first and not a move");
+            move(i, m, 4, WaypointKind::air);
+        } else if (i.name == "arclstart" || i.name == "arcl" || i.name == "arclend") {
+            const bool start = i.name == "arclstart", end = i.name == "arclend";
+            require(welding_ != start, i.place, "ArcLStart first, and once");
+            move(i, m, 6, start ? WaypointKind::weld_start : end ? WaypointKind::weld_end : WaypointKind::weld);
+            require(!(start || end) || i.arguments[4].name == "fine", i.place,
+                    "zone fine where the arc starts and ends");
+            welding_ = !end;
+        } else {
+            require(i.arguments.empty() && i.options.empty(), i.place, "a known instruction");
+            call(i.name, i.place, depth + 1);
+        }
+    }
+
+    // To-point and speed are the first two arguments, zone and tool the last two.
+    void move(const Instruction& i, const Module& m, std::size_t arguments, WaypointKind kind) {
+        require(i.arguments.size() == arguments, i.place, std::to_string(arguments) + " arguments");
+        require(i.options.contains("wobj"), i.place, "\\WObj");
+        require(linear_free_ && joint_free_, i.place, "ConfL\\Off and ConfJ\\Off, since confdata is zero,");
+        for (std::size_t k = 2; k < arguments; ++k) {
+            require(!i.arguments[k].name.empty(), i.place, "the name of seam, weld, zone or tool data");
+        }
+        Waypoint w;
+        w.kind = kind;
+        set_pose(w, resolve(i.arguments[0], m, i.place), i.place);
+        const std::vector<double> speed = numbers(resolve(i.arguments[1], m, i.place), 4, i.place);
+        w.speed_mm_s = speed[0];
+        waypoints.push_back(w);
+    }
+
+    static const Value& resolve(const Value& given, const Module& m, const Scanner& place) {
+        if (given.name.empty()) {
+            return given;
+        }
+        const auto found = m.data.find(given.name);
+        require(found != m.data.end(), place, "data " + given.name + " declared in this module");
+        return found->second;
+    }
+
+    static std::vector<double> numbers(const Value& aggregate, std::size_t count, const Scanner& place) {
+        std::vector<double> result;
+        for (const Value& item : aggregate.items) {
+            result.push_back(item.number);
+            require(std::isfinite(item.number), place, "numbers in an aggregate");
+        }
+        require(result.size() == count, place, std::to_string(count) + " numbers in an aggregate");
+        return result;
+    }
+
+    // robtarget: [trans x, y, z mm], [rot q1..q4 = w, x, y, z], [confdata], [external axes, 9E9 where there is none]
+    static void set_pose(Waypoint& w, const Value& robtarget, const Scanner& place) {
+        require(robtarget.items.size() == 4, place, "a robtarget of four parts");
+        const std::vector<double> trans = numbers(robtarget.items[0], 3, place);
+        const std::vector<double> rot = numbers(robtarget.items[1], 4, place);
+        numbers(robtarget.items[2], 4, place);
+        for (const double axis : numbers(robtarget.items[3], 6, place)) {
+            require(axis == 9e9, place, "9E9 for an external axis that is not there");
+        }
+        w.p = {trans[0], trans[1], trans[2]};
+        w.q = Eigen::Quaterniond(rot[0], rot[1], rot[2], rot[3]);
+        require(std::abs(w.q.norm() - 1) < 1e-7, place, "a normalised quaternion");
+        w.q.normalize();
+    }
+
+    std::vector<Module> modules_;
+    bool welding_ = false;
+    bool linear_free_ = false;
+    bool joint_free_ = false;
+};
+
+}  // namespace
+
+std::vector<Waypoint> read_abb(const std::vector<TextFile>& files) {
+    return Controller(files).waypoints;
+}
+
+}  // namespace seampath::exporting

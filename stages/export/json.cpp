@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "stages/export/text.hpp"
+
+/// waypoints.json: a head with frame, units and quaternion order, then the waypoints with the columns of waypoints.csv.
+/// Numbers are in their shortest exact form, so nothing is rounded.
+namespace seampath::exporting {
+namespace {
+
+std::string pair(std::string_view key, const std::string& value) {
+    return "\"" + std::string(key) + "\":" + value;
+}
+std::string pair(std::string_view key, double value) {
+    return pair(key, shortest(value));
+}
+std::string quote(std::string_view text) {
+    return "\"" + std::string(text) + "\"";
+}
+
+std::string object(const Waypoint& w) {
+    return "{" + pair("seam", std::to_string(w.seam)) + "," + pair("index", std::to_string(w.index)) + "," +
+           pair("kind", quote(name(w.kind))) + "," + pair("station_mm", w.station_mm) + "," + pair("x", w.p.x()) + "," +
+           pair("y", w.p.y()) + "," + pair("z", w.p.z()) + "," + pair("qw", w.q.w()) + "," + pair("qx", w.q.x()) + "," +
+           pair("qy", w.q.y()) + "," + pair("qz", w.q.z()) + "," + pair("speed_mm_s", w.speed_mm_s) + "," +
+           pair("time_s", w.time_s) + "," + pair("sigma_mm", w.sigma_mm) + "}";
+}
+
+// As much of JSON (RFC 8259) as the file needs: objects, arrays, numbers, and strings without escapes.
+struct Value {
+    double number = 0;
+    std::string text;
+    std::vector<Value> items;
+    std::vector<std::pair<std::string, Value>> members;
+};
+
+Value value(Scanner& scan) {
+    Value result;
+    if (scan.accept('{')) {
+        for (bool more = !scan.accept('}'); more;) {
+            std::string key = scan.quoted();
+            scan.expect(':');
+            result.members.emplace_back(std::move(key), value(scan));
+            more = scan.accept(',');
+            if (!more) {
+                scan.expect('}');
+            }
+        }
+    } else if (scan.accept('[')) {
+        for (bool more = !scan.accept(']'); more;) {
+            result.items.push_back(value(scan));
+            more = scan.accept(',');
+            if (!more) {
+                scan.expect(']');
+            }
+        }
+    } else if (scan.at_quote()) {
+        result.text = scan.quoted();
+    } else {
+        result.number = scan.number();
+    }
+    return result;
+}
+
+class Reader {
+public:
+    explicit Reader(const Scanner& scan) : scan_(scan) {}
+
+    const Value& member(const Value& object, std::string_view key) const {
+        for (const auto& [name, held] : object.members) {
+            if (name == key) {
+                return held;
+            }
+        }
+        scan_.fail("a member \"" + std::string(key) + "\" before this place");
+    }
+    double number(const Value& object, std::string_view key) const { return member(object, key).number; }
+    void require(const Value& object, std::string_view key, std::string_view text) const {
+        if (member(object, key).text != text) {
+            scan_.fail("\"" + std::string(key) + "\" being " + std::string(text) + " before this place");
+        }
+    }
+    Waypoint waypoint(const Value& object) const {
+        Waypoint w;
+        w.seam = static_cast<int>(number(object, "seam"));
+        w.index = static_cast<int>(number(object, "index"));
+        const auto kind = std::find(kWaypointKindNames.begin(), kWaypointKindNames.end(), member(object, "kind").text);
+        if (kind == kWaypointKindNames.end()) {
+            scan_.fail("a known \"kind\" before this place");
+        }
+        w.kind = static_cast<WaypointKind>(kind - kWaypointKindNames.begin());
+        w.station_mm = number(object, "station_mm");
+        w.p = {number(object, "x"), number(object, "y"), number(object, "z")};
+        w.q =
+            Eigen::Quaterniond(number(object, "qw"), number(object, "qx"), number(object, "qy"), number(object, "qz"));
+        w.speed_mm_s = number(object, "speed_mm_s");
+        w.time_s = number(object, "time_s");
+        w.sigma_mm = number(object, "sigma_mm");
+        return w;
+    }
+
+private:
+    const Scanner& scan_;
+};
+
+}  // namespace
+
+std::vector<TextFile> write_json(const Plan& in_base, const ExportOptions& options) {
+    std::string text = "{\n";
+    text += pair("format", quote("seampath waypoints")) + ",\n";
+    text += pair("frame", quote("robot base")) + ",\n";
+    text += pair("base_from_scan", "[" + list(options.base_from_scan, ",") + "]") + ",\n";
+    text += pair("units", "{" + pair("length", quote("mm")) + "," + pair("speed", quote("mm/s")) + "," +
+                              pair("time", quote("s")) + "}") +
+            ",\n";
+    text += pair("quaternion_order", quote("qw,qx,qy,qz")) + ",\n";
+    text += pair("tool", quote("+Z along the torch into the joint, +X along travel")) + ",\n";
+    text += pair("max_chord_error_mm", in_base.max_chord_error_mm) + ",\n";
+    text += pair("duration_s", in_base.duration_s) + ",\n";
+    text += pair("waypoints", "[\n");
+    for (const Waypoint& w : in_base.waypoints) {
+        text += object(w) + (&w == &in_base.waypoints.back() ? "\n" : ",\n");
+    }
+    return {{"waypoints.json", text + "]\n}\n"}};
+}
+
+std::vector<Waypoint> read_json(const std::vector<TextFile>& files) {
+    Scanner scan(files.at(0), '\0');
+    const Value root = value(scan);
+    if (!scan.done()) {
+        scan.fail("the end of the file");
+    }
+    const Reader reader(scan);
+    const Value& units = reader.member(root, "units");
+    reader.require(units, "length", "mm");
+    reader.require(units, "speed", "mm/s");
+    reader.require(units, "time", "s");
+    std::vector<Waypoint> waypoints;
+    for (const Value& object : reader.member(root, "waypoints").items) {
+        waypoints.push_back(reader.waypoint(object));
+    }
+    return waypoints;
+}
+
+}  // namespace seampath::exporting

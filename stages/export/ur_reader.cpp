@@ -1,0 +1,175 @@
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "stages/export/text.hpp"
+
+/// Reads a URScript function of moves: metres, rad and m/s, rotation vectors, defaults of the official manual, outputs
+/// that a weld hangs on. Refuses what a controller would skip or refuse.
+namespace seampath::exporting {
+namespace {
+
+struct Value {
+    std::vector<double> pose;  // of p[...], or empty
+    double number = 0;
+    std::string word;  // True or False, or empty
+};
+
+struct Call {
+    std::string name;
+    std::vector<Value> positional;
+    std::map<std::string, Value> named;
+};
+
+Value value_after_name(Scanner& scan, const std::string& name) {
+    Value result;
+    if (name == "p") {
+        scan.expect('[');
+        do {
+            result.pose.push_back(scan.number());
+        } while (scan.accept(','));
+        scan.expect(']');
+        if (result.pose.size() != 6) {
+            scan.fail("a pose of six numbers before this place");
+        }
+    } else if (name == "True" || name == "False") {
+        result.word = name;
+    } else {
+        scan.fail("p[...], True or False before this place");
+    }
+    return result;
+}
+
+Value value(Scanner& scan) {
+    if (scan.at_name()) {
+        return value_after_name(scan, scan.name());
+    }
+    Value result;
+    result.number = scan.number();
+    return result;
+}
+
+Call call(Scanner& scan, std::string name) {
+    Call result{std::move(name), {}, {}};
+    scan.expect('(');
+    for (bool more = !scan.accept(')'); more;) {
+        if (scan.at_name()) {
+            const std::string word = scan.name();
+            if (scan.accept('=')) {
+                result.named[word] = value(scan);
+            } else {
+                result.positional.push_back(value_after_name(scan, word));
+            }
+        } else {
+            result.positional.push_back(value(scan));
+        }
+        more = scan.accept(',');
+        if (!more) {
+            scan.expect(')');
+        }
+    }
+    return result;
+}
+
+// Angle times axis, by the definition of the rotation vector.
+Eigen::Quaterniond rotation(double rx, double ry, double rz) {
+    const Eigen::Vector3d vector(rx, ry, rz);
+    const double angle = vector.norm();
+    return angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, vector / angle)) : Eigen::Quaterniond::Identity();
+}
+
+class Controller {
+public:
+    explicit Controller(const TextFile& file) : scan_(file, '#') {
+        if (scan_.name() != "def") {
+            scan_.fail("def before this place");
+        }
+        scan_.name();
+        for (const char c : {'(', ')', ':'}) {
+            scan_.expect(c);
+        }
+        for (std::string word = scan_.name(); word != "end"; word = scan_.name()) {
+            execute(call(scan_, word));
+        }
+        require(scan_.done(), "the end of the file");
+        require(!arc_, "the output off at the end");
+        check_blends();
+    }
+    std::vector<Waypoint> waypoints;
+
+private:
+    void require(bool holds, const std::string& needed) const {
+        if (!holds) {
+            scan_.fail(needed + " before this place");
+        }
+    }
+
+    void execute(const Call& c) {
+        if (c.name == "set_tcp") {
+            require(c.positional.size() == 1 && c.positional[0].pose.size() == 6, "the pose of the tool");
+            tcp_ = true;
+        } else if (c.name == "set_standard_digital_out") {
+            require(c.positional.size() == 2 && !c.positional[1].word.empty(), "the number of an output and its state");
+            output(c.positional[1].word == "True");
+        } else if (c.name == "movel" || c.name == "movep") {
+            move(c);
+        } else {
+            scan_.fail("a known function before this place");
+        }
+    }
+
+    // The arc burns from the point reached when the output goes on to the one reached when it goes off.
+    void output(bool on) {
+        require(on != arc_ || !on, "the output off first");
+        if (on || arc_) {
+            require(!waypoints.empty() && blends_.back() == 0, "a standstill where the output changes");
+            waypoints.back().kind = on ? WaypointKind::weld_start : WaypointKind::weld_end;
+        }
+        arc_ = on;
+    }
+
+    // movel(pose, a=1.2, v=0.25, t=0, r=0), movep(pose, a=1.2, v=0.25, r=0)
+    void move(const Call& c) {
+        require(tcp_, "set_tcp");
+        require(c.positional.size() == 1 && c.positional[0].pose.size() == 6, "a pose");
+        const auto named = [&](const char* name, double otherwise) {
+            const auto found = c.named.find(name);
+            return found == c.named.end() ? otherwise : found->second.number;
+        };
+        require(!c.named.contains("t"), "no time, since it overrides the speed,");
+        const auto& pose = c.positional[0].pose;
+        Waypoint w;
+        w.kind = arc_ ? WaypointKind::weld : WaypointKind::air;
+        w.p = 1000 * Eigen::Vector3d(pose[0], pose[1], pose[2]);
+        w.q = rotation(pose[3], pose[4], pose[5]);
+        w.speed_mm_s = 1000 * named("v", 0.25);
+        waypoints.push_back(w);
+        blends_.push_back(1000 * named("r", 0));
+    }
+
+    // A blend must stay below half of both neighbouring moves, or it may overlap the next and the move is skipped.
+    void check_blends() const {
+        for (std::size_t k = 0; k < waypoints.size(); ++k) {
+            if (blends_[k] == 0) {
+                continue;
+            }
+            require(k > 0 && k + 1 < waypoints.size() &&
+                        2 * blends_[k] < (waypoints[k].p - waypoints[k - 1].p).norm() &&
+                        2 * blends_[k] < (waypoints[k + 1].p - waypoints[k].p).norm(),
+                    "blends below half of both neighbouring moves (move " + std::to_string(k) + ")");
+        }
+    }
+
+    Scanner scan_;
+    std::vector<double> blends_;  // mm, one a waypoint
+    bool tcp_ = false;
+    bool arc_ = false;
+};
+
+}  // namespace
+
+std::vector<Waypoint> read_ur(const std::vector<TextFile>& files) {
+    return Controller(files.at(0)).waypoints;
+}
+
+}  // namespace seampath::exporting

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "stages/types.hpp"
+
+/// Plans made by hand and by chance, for the exporters.
+namespace seampath::test {
+
+inline Waypoint waypoint(int seam, WaypointKind kind, double station_mm, const Eigen::Vector3d& p,
+                         const Eigen::Quaterniond& q, double speed_mm_s) {
+    Waypoint w;
+    w.seam = seam;
+    w.kind = kind;
+    w.station_mm = station_mm;
+    w.p = p;
+    w.q = q;
+    w.speed_mm_s = speed_mm_s;
+    w.sigma_mm = 0.03125;
+    return w;
+}
+
+/// Numbers the waypoints of each seam and times them along straight lines.
+inline Plan finished(std::vector<Waypoint> waypoints) {
+    for (std::size_t k = 1; k < waypoints.size(); ++k) {
+        const Waypoint& from = waypoints[k - 1];
+        waypoints[k].index = waypoints[k].seam == from.seam ? from.index + 1 : 0;
+        waypoints[k].time_s = from.time_s + (waypoints[k].p - from.p).norm() / waypoints[k].speed_mm_s;
+    }
+    Plan plan;
+    plan.waypoints = std::move(waypoints);
+    plan.max_chord_error_mm = 0.015625;
+    plan.duration_s = plan.waypoints.back().time_s;
+    return plan;
+}
+
+/// Approach, two weld points 10 mm apart and retract, the torch always at q.
+inline Plan plan_with(const Eigen::Quaterniond& q, double speed_mm_s = 8.5) {
+    const Eigen::Vector3d x = q * Eigen::Vector3d::UnitX(), z = q * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d p(25.1234, 10.5678, -1.25);
+    return finished({waypoint(0, WaypointKind::approach, 0, p - 30 * z, q, 100),
+                     waypoint(0, WaypointKind::weld_start, 0, p, q, 100),
+                     waypoint(0, WaypointKind::weld_end, 10, p + 10 * x, q, speed_mm_s),
+                     waypoint(0, WaypointKind::retract, 10, p + 10 * x - 30 * z, q, 100)});
+}
+
+/// A straight seam at 8.5 mm/s and a closed one at 12 mm/s whose corners lie on a circle, with numbers that every
+/// machine computes alike: quaternions of thirds, halves and fifths, and no function but the square root.
+inline Plan golden_plan() {
+    using enum WaypointKind;
+    const Eigen::Quaterniond a(0, 1, 0, 0), b(0, 0.6, 0.8, 0), c(0.5, 0.5, 0.5, -0.5), d(-0.1, 0.7, 0.7, 0.1);
+    return finished(
+        {waypoint(0, approach, 0, {10.25, -4, 30}, a, 100), waypoint(0, weld_start, 0, {10.25, -4, 0}, a, 100),
+         waypoint(0, weld, 40, {50.25, -4, 0.0625}, a, 8.5),
+         waypoint(0, weld, 50.5, {60.75, -4.0078125, 0.0625}, b, 8.5),
+         waypoint(0, weld_end, 90.5, {100.75, -4.0078125, 0}, b, 8.5),
+         waypoint(0, retract, 90.5, {100.75, -4.0078125, 30}, b, 100), waypoint(1, air, 0, {60, 20, 60}, a, 250),
+         waypoint(1, approach, 0, {50, 0, 25}, c, 250), waypoint(1, weld_start, 0, {50, 0, 0}, c, 100),
+         waypoint(1, weld, 32.25, {30, 40, 0}, c, 12), waypoint(1, weld, 96.75, {-40, 30, 0}, d, 12),
+         waypoint(1, weld, 150, {-30, -40, 0}, d, 12), waypoint(1, weld, 215, {40, -30, 0}, c, 12),
+         waypoint(1, weld_end, 314, {50, 0, 0}, c, 12), waypoint(1, retract, 314, {50, 0, 25}, c, 100)});
+}
+
+/// One to three seams of 2 to 40 weld points each, anywhere within 3 m, at any speed and any rotation, turned by less
+/// than half a turn from point to point or not at all.
+inline Plan random_plan(std::mt19937_64& generator) {
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(generator);
+    };
+    const auto direction = [&] {
+        std::normal_distribution<double> normal;
+        return Eigen::Vector4d(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
+    };
+    std::vector<Waypoint> waypoints;
+    const int seams = std::uniform_int_distribution<int>(1, 3)(generator);
+    for (int seam = 0; seam < seams; ++seam) {
+        const double speed = uniform(0.5, 60), air = uniform(50, 900), step = std::pow(10, uniform(-2, 2));
+        Eigen::Vector3d p(uniform(-3000, 3000), uniform(-3000, 3000), uniform(-3000, 3000));
+        Eigen::Quaterniond q(direction());
+        const auto add = [&](WaypointKind kind, double at, double how_fast) {
+            waypoints.push_back(waypoint(seam, kind, at, p, q, how_fast));
+        };
+        if (seam > 0) {
+            add(WaypointKind::air, 0, air);
+        }
+        add(WaypointKind::approach, 0, air);
+        p += 30 * Eigen::Vector3d(direction().head<3>());
+        add(WaypointKind::weld_start, 0, air);
+        const int points = std::uniform_int_distribution<int>(2, 40)(generator);
+        for (int k = 1; k < points; ++k) {
+            p += step * Eigen::Vector3d(direction().head<3>());
+            q = (q * Eigen::Quaterniond(Eigen::Vector4d(direction() * 0.05 + Eigen::Vector4d::UnitW()))).normalized();
+            add(k == points - 1 ? WaypointKind::weld_end : WaypointKind::weld, step * k, speed);
+        }
+        p += 30 * Eigen::Vector3d(direction().head<3>());
+        add(WaypointKind::retract, step * points, air);
+    }
+    return finished(waypoints);
+}
+
+}  // namespace seampath::test
