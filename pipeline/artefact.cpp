@@ -18,7 +18,10 @@ std::string artefact_key(std::string_view stage, std::string_view options, std::
     // lengths first, so that no two different lists join to the same text
     std::string all = build_id();
     const auto add = [&all](std::string_view part) {
-        all += "\n" + std::to_string(part.size()) + ":" + std::string(part);
+        all += '\n';
+        all += std::to_string(part.size());
+        all += ':';
+        all += part;
     };
     add(stage);
     add(options);

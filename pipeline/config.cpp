@@ -265,7 +265,8 @@ std::string options_table(std::string_view stage) {
             rows.push_back({std::string(section.stage) + "." + std::string(field.key), std::string(unit_of(field.key)),
                             field_json(field).dump(), domain_text(field), std::string(field.meaning)});
         }
-        table += (table.empty() ? "" : "\n") + aligned(rows);
+        table += table.empty() ? "" : "\n";
+        table += aligned(rows);
     }
     return table;
 }

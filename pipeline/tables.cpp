@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 
 void append(std::string& line, std::initializer_list<double> values) {
     for (const double value : values) {
-        line += "," + number_text(value);
+        line += ',';
+        line += number_text(value);
     }
 }
 
