@@ -90,14 +90,6 @@ void write_products(const PartResult& part, const Walk& walk) {
     walk.write("report.html", report_html(part));
 }
 
-std::string report_summary(const PartResult& part) {
-    return std::to_string(part.models.size()) + " seam(s), " + std::to_string(part.programs.size()) +
-           " program file(s) -> " +
-           (part.pass()           ? "pass"
-            : part.models.empty() ? "no seam found"
-                                  : "out of tolerance");
-}
-
 }  // namespace
 
 PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config& config, const Resume& resume,

@@ -99,6 +99,15 @@ std::string export_summary(const PartResult& part) {
            mm(largest(part.programs, [](const ProgramFile& file) { return file.max_position_error_mm; }), 6);
 }
 
+std::string report_summary(const PartResult& part) {
+    return count(part.models.size(), "seam") + ", " + count(part.programs.size(), "program file") + " -> report; " +
+           std::string(verdict(part));
+}
+
+std::string_view verdict(const PartResult& part) {
+    return part.pass() ? "pass" : part.models.empty() ? "no seam found" : "out of tolerance";
+}
+
 std::string seam_table(const PartResult& part) {
     std::vector<std::vector<std::string>> rows{
         {"seam", "kind", "", "length mm", "rms mm", "max mm", "sigma mm", "coverage", "verdict"}};

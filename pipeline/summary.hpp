@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pipeline/result.hpp"
 
@@ -14,6 +15,10 @@ std::string fit_summary(const PartResult& part);
 std::string validate_summary(const PartResult& part);
 std::string plan_summary(const PartResult& part);
 std::string export_summary(const PartResult& part);
+std::string report_summary(const PartResult& part);
+
+/// "pass", "out of tolerance" or "no seam found".
+std::string_view verdict(const PartResult& part);
 
 /// One row a seam: kind, closed, length, rms, max, sigma, verdict; for a terminal.
 std::string seam_table(const PartResult& part);

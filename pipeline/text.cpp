@@ -43,7 +43,7 @@ std::string_view near_miss(std::string_view word, std::span<const std::string_vi
         return {};
     }
     std::string_view best;
-    std::size_t fewest = std::max<std::size_t>(1, word.size() / 3) + 1;
+    std::size_t fewest = std::max<std::size_t>(1, (word.size() + 1) / 3) + 1;
     for (const auto candidate : candidates) {
         const bool without_unit = candidate.starts_with(word) && candidate.substr(word.size()).starts_with('_');
         const std::size_t distance = without_unit ? 1 : edits(word, candidate);

@@ -24,7 +24,8 @@ SceneKind scene_kind(const std::string& scene) {
             return static_cast<SceneKind>(i);
         }
     }
-    throw InputError("dataset: \"" + scene + "\" is no scene; there are " + join(kSceneNames) + hint(scene, kSceneNames));
+    throw InputError("dataset: \"" + scene + "\" is no scene; there are " + join(kSceneNames) +
+                     hint(scene, kSceneNames));
 }
 
 int make(const Arguments& given) {

@@ -26,9 +26,11 @@ int guarded(const std::function<int()>& act, const std::string& prefix) {
     } catch (const InputError& error) {
         return fail(kBadInput, prefix, error.what());
     } catch (const Interrupted&) {
-        return fail(kInterrupted, prefix, "interrupted; run the same command again to go on from the last finished stage");
+        return fail(kInterrupted, prefix,
+                    "interrupted; run the same command again to go on from the last finished stage");
     } catch (const std::bad_alloc&) {
-        return fail(kBadInput, prefix, "memory: there is not enough for this input; give the program more or a smaller scan");
+        return fail(kBadInput, prefix,
+                    "memory: there is not enough for this input; give the program more or a smaller scan");
     } catch (const std::exception& error) {
         return fail(kOwnFault, prefix, std::string("fault of the program itself: ") + error.what());
     }

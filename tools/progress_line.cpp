@@ -19,12 +19,14 @@ constexpr std::string_view kClearLine = "\r\033[K";
 ProgressLine::ProgressLine(std::string prefix) : prefix_(std::move(prefix)), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress ProgressLine::progress() {
-    return {[this](std::string_view stage) { begin(stage); }, [this](const StageTiming& timing) { end(timing); }, stop_asked};
+    return {[this](std::string_view stage) { begin(stage); }, [this](const StageTiming& timing) { end(timing); },
+            stop_asked};
 }
 
 void ProgressLine::begin(std::string_view stage) {
     if (terminal_) {
-        drawer_ = std::jthread([this, name = std::string(stage), done = done_](const std::stop_token& stop) { draw(stop, name, done); });
+        drawer_ = std::jthread(
+            [this, name = std::string(stage), done = done_](const std::stop_token& stop) { draw(stop, name, done); });
     }
 }
 
@@ -41,9 +43,9 @@ void ProgressLine::draw(const std::stop_token& stop, const std::string& stage, s
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return stop.stop_requested(); })) {
         const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-        std::cerr << kClearLine << prefix_ << "[" << std::string(done, '#') << std::string(kSteps - done, '.') << "] " << stage
-                  << " " << rounded(passed.count(), 1) << " s" << (stop_asked() ? ", stopping after this stage" : "")
-                  << std::flush;
+        std::cerr << kClearLine << prefix_ << "[" << std::string(done, '#') << std::string(kSteps - done, '.') << "] "
+                  << stage << " " << rounded(passed.count(), 1) << " s"
+                  << (stop_asked() ? ", stopping after this stage" : "") << std::flush;
     }
     std::cerr << kClearLine << std::flush;
 }

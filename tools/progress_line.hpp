@@ -29,7 +29,7 @@ private:
     std::size_t done_ = 0;
     std::mutex mutex_;
     std::condition_variable_any wake_;
-    std::jthread drawer_;      ///< last: it is stopped before what it uses goes
+    std::jthread drawer_;  ///< last: it is stopped before what it uses goes
 };
 
 }  // namespace seampath

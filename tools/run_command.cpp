@@ -91,8 +91,7 @@ std::vector<Part> parts(const Arguments& given) {
 }
 
 void print_result(const Part& part, const PartResult& result) {
-    const std::string verdict = result.pass() ? "pass" : result.models.empty() ? "no seam found" : "out of tolerance";
-    std::cout << part.name << ": " << verdict << "\n";
+    std::cout << part.name << ": " << verdict(result) << "\n";
     if (result.models.empty()) {
         for (const auto& remark : result.extraction.remarks) {
             std::cout << "  " << remark << "\n";
@@ -102,7 +101,8 @@ void print_result(const Part& part, const PartResult& result) {
     }
     std::cout << "report    " << (part.folder / "report.html").string() << "\n";
     std::cout << "programs  "
-              << (result.programs.empty() ? "none: no seam may be welded" : (part.folder / "programs").string()) << "\n";
+              << (result.programs.empty() ? "none: no seam may be welded" : (part.folder / "programs").string())
+              << "\n";
 }
 
 int run_one(Part& part, const Arguments& given, const Config& config) {
@@ -122,7 +122,8 @@ std::string_view word(int status) {
 std::string summary_json(const std::vector<Part>& all, bool with_reports) {
     Json list = Json::array();
     for (const auto& part : all) {
-        list.push_back({{"name", part.name}, {"result", word(part.status)}, {"exit_status", part.status}, {"seams", part.seams}});
+        list.push_back(
+            {{"name", part.name}, {"result", word(part.status)}, {"exit_status", part.status}, {"seams", part.seams}});
         if (with_reports && part.status <= kOutOfTolerance) {
             list.back()["report"] = Json::parse(read_file(part.folder / "report.json", kMaxReportBytes, "run"));
         }
@@ -190,7 +191,8 @@ Command run_command(CLI::App& program) {
         "  seampath run tee.ply --out out\n"
         "  seampath run tee.ply --out out --config cell3.json --robot abb --set plan.speed_mm_s=6\n"
         "  seampath run monday/*.ply --out monday-out --from validate --set validate.tolerance_mm=0.2\n"
-        "Exit status: 0 pass, 1 out of tolerance or no seam, 2 bad input or config, 3 fault of the program, 130 interrupted\n");
+        "Exit status: 0 pass, 1 out of tolerance or no seam, 2 bad input or config, 3 fault of the program, 130 "
+        "interrupted\n");
     return {app, [given] { return run(*given); }};
 }
 

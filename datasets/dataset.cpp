@@ -1,0 +1,47 @@
+#include "datasets/dataset.hpp"
+
+#include <cmath>
+#include <thread>
+
+#include "datasets/portable_math.hpp"
+#include "datasets/rng.hpp"
+
+namespace seampath {
+namespace {
+
+constexpr std::uint64_t kPoseStream = 2;
+
+/// Uniform over all rotations (a normalised four-dimensional Gaussian), uniform offset.
+Eigen::Isometry3d draw_pose(const SceneOptions& scene, std::uint64_t seed) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    if (scene.random_pose) {
+        const Random random(seed, kPoseStream);
+        const Eigen::Quaterniond q(random.normal(0), random.normal(1), random.normal(2), random.normal(3));
+        pose.linear() = q.normalized().toRotationMatrix();
+        for (int axis = 0; axis < 3; ++axis) {
+            pose.translation()[axis] = random.uniform(10 + axis, -scene.max_offset_mm, scene.max_offset_mm);
+        }
+    }
+    return pose;
+}
+
+}  // namespace
+
+Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, std::uint64_t seed, unsigned threads) {
+    Dataset dataset{resolved(scene, seed), scanner, seed, draw_pose(scene, seed), {}, {}};
+    const Scene made = make_scene(dataset.scene);
+    dataset.truth = transformed(made.truth, dataset.scan_from_scene);
+    if (threads == 0) {
+        threads = std::max(1U, std::thread::hardware_concurrency());
+    }
+    for (int i = 0; i < scanner.views; ++i) {
+        for (const Eigen::Vector3d& p : take_view(made, scanner, seed, i, threads).points) {
+            if (!std::isnan(p.x())) {
+                dataset.points.push_back((dataset.scan_from_scene * p).cast<float>());
+            }
+        }
+    }
+    return dataset;
+}
+
+}  // namespace seampath

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "datasets/scanner.hpp"
+#include "datasets/scenes.hpp"
+
+/// Scans with known truth.
+namespace seampath {
+
+struct Dataset {
+    SceneOptions scene;  ///< as made: every dimension set
+    ScannerOptions scanner;
+    std::uint64_t seed = 0;
+    Eigen::Isometry3d scan_from_scene;    ///< pose of the part
+    std::vector<Eigen::Vector3f> points;  ///< all views in one, mm, scan frame
+    Truth truth;                          ///< scan frame
+};
+
+/// A scan of a scene and its truth, all from one seed: the same bytes on any machine and any number of threads
+/// (0: as many as the machine has). Throws InputError for a part that can't be built.
+Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, std::uint64_t seed,
+                     unsigned threads = 0);
+
+/// Writes `scan.ply` (binary, x y z as 32-bit floats) and `truth.json` into the folder, which is made when it is
+/// missing. Throws InputError when a file can't be written.
+void write_dataset(const Dataset& dataset, const std::filesystem::path& folder);
+
+/// Throws InputError when the file is not a truth file.
+Truth read_truth(const std::filesystem::path& file);
+
+}  // namespace seampath

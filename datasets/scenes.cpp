@@ -1,0 +1,389 @@
+#include "datasets/scenes.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "datasets/portable_math.hpp"
+#include "datasets/rng.hpp"
+#include "stages/error.hpp"
+
+namespace seampath {
+namespace {
+
+using Eigen::Vector3d;
+using portable::kPi;
+using portable::radians;
+
+constexpr double kTruthSpacing = 0.095;  // mm; the promise is 0.1
+constexpr std::uint64_t kDimensionStream = 1;
+
+/// Usual value of a dimension, and how far the seed moves it either way. With `of_header`, both are shares of the
+/// header's radius.
+struct Usual {
+    std::optional<double> SceneOptions::*dimension;
+    double value;
+    double spread = 0.2;
+    bool of_header = false;
+};
+
+std::vector<Usual> usual_dimensions(SceneKind kind) {
+    using O = SceneOptions;
+    const Usual plate{&O::plate_thickness_mm, 10};
+    switch (kind) {
+        case SceneKind::tee:
+            return {plate,
+                    {&O::margin_mm, 45},
+                    {&O::length_mm, 200},
+                    {&O::height_mm, 60},
+                    {&O::thickness_mm, 8},
+                    {&O::lean_deg, 15, 0.65}};
+        case SceneKind::s_curve:
+            return {plate,
+                    {&O::margin_mm, 40},
+                    {&O::length_mm, 210},
+                    {&O::height_mm, 50},
+                    {&O::thickness_mm, 8},
+                    {&O::amplitude_mm, 18},
+                    {&O::wavelength_mm, 180}};
+        case SceneKind::box_on_plate:
+            return {plate,
+                    {&O::margin_mm, 40},
+                    {&O::length_mm, 110},
+                    {&O::width_mm, 80},
+                    {&O::height_mm, 50},
+                    {&O::corner_radius_mm, 10}};
+        case SceneKind::pipe_on_plate:
+            return {plate, {&O::margin_mm, 40}, {&O::radius_mm, 40}, {&O::height_mm, 65}, {&O::lean_deg, 22}};
+        case SceneKind::pipe_on_pipe:
+            return {{&O::header_radius_mm, 55},
+                    {&O::radius_mm, 0.62, 0.2, true},
+                    {&O::height_mm, 60},
+                    {&O::lean_deg, 0},
+                    {&O::offset_mm, 0}};
+        case SceneKind::pipe_on_pipe_oblique:
+            return {{&O::header_radius_mm, 58},
+                    {&O::radius_mm, 0.54, 0.2, true},
+                    {&O::height_mm, 55},
+                    {&O::lean_deg, 24},
+                    {&O::offset_mm, 0.18, 0.2, true}};
+        case SceneKind::pipe_on_pipe_equal:
+            return {{&O::header_radius_mm, 50},
+                    {&O::radius_mm, 0.925, 0.025, true},
+                    {&O::height_mm, 60},
+                    {&O::lean_deg, 0},
+                    {&O::offset_mm, 0}};
+    }
+    ensure(false, "every scene kind has its dimensions");
+    return {};
+}
+
+std::string text(double value) {
+    char buffer[32];
+    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+void require(bool holds, const std::string& what) {
+    if (!holds) {
+        throw InputError("dataset: " + what);
+    }
+}
+
+/// A solid is what lies inside all its faces.
+void add_solid(Scene& scene, const std::vector<Shape>& faces) {
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        std::vector<Shape> others = faces;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+        scene.surfaces.push_back({faces[i], std::move(others)});
+    }
+}
+
+void add_block(Scene& scene, const Vector3d& low, const Vector3d& high) {
+    std::vector<Shape> faces;
+    for (int axis = 0; axis < 3; ++axis) {
+        faces.push_back(Plane{high, Vector3d::Unit(axis)});
+        faces.push_back(Plane{low, -Vector3d::Unit(axis)});
+    }
+    add_solid(scene, faces);
+    scene.box.extend(low);
+    scene.box.extend(high);
+}
+
+/// A round bar from s = 0 to s = length along the axis.
+void add_bar(Scene& scene, const Cylinder& cylinder, double length) {
+    const Vector3d end = cylinder.p + length * cylinder.axis;
+    add_solid(scene, {cylinder, Plane{end, cylinder.axis}, Plane{cylinder.p, -cylinder.axis}});
+    const Vector3d reach = cylinder.radius * (Vector3d::Ones() - cylinder.axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
+    for (const Vector3d& centre : {cylinder.p, end}) {
+        scene.box.extend(centre - reach);
+        scene.box.extend(centre + reach);
+    }
+}
+
+void add_plate(Scene& scene, double half_x, double half_y, const SceneOptions& o) {
+    add_block(scene, {-half_x, -half_y, -*o.plate_thickness_mm}, {half_x, half_y, 0});
+}
+
+/// Position and normals of a seam at a parameter.
+struct CurvePoint {
+    Vector3d p, n1, n2;
+};
+using SeamCurve = std::function<CurvePoint(double)>;
+
+/// Points at equal steps of the parameter, so many that none are further apart than promised, in the direction n1 x n2.
+void add_seam(Scene& scene, bool closed, double begin, double end, const SeamCurve& curve) {
+    const int kProbe = 2048;
+    double longest = 0;
+    for (int i = 0; i < kProbe; ++i) {
+        const auto at = [&](int k) { return curve(begin + (end - begin) * k / kProbe).p; };
+        longest = std::max(longest, (at(i + 1) - at(i)).norm());
+    }
+    const int steps = static_cast<int>(std::ceil(longest * kProbe / kTruthSpacing));
+    TruthSeam seam{closed, {}};
+    for (int i = 0; i < steps + (closed ? 0 : 1); ++i) {
+        const CurvePoint c = curve(begin + (end - begin) * i / steps);
+        seam.points.push_back({c.p, c.n1.cross(c.n2).normalized(), c.n1, c.n2});
+    }
+    if ((seam.points[1].p - seam.points[0].p).dot(seam.points[0].tangent) < 0) {
+        std::reverse(seam.points.begin(), seam.points.end());
+    }
+    scene.truth.seams.push_back(std::move(seam));
+}
+
+/// Web flush with the plate's ends, leaning to +y.
+Scene make_tee(const SceneOptions& o) {
+    const auto [s, c] = portable::sincos(radians(*o.lean_deg));
+    const Vector3d up(0, s, c);
+    const Vector3d side(0, c, -s);
+    const double half_length = *o.length_mm / 2;
+    const double half_thickness = *o.thickness_mm / 2;
+    Scene scene;
+    add_plate(scene, half_length, half_thickness / c + *o.margin_mm, o);
+    add_solid(scene,
+              {Plane{half_thickness * side, side}, Plane{-half_thickness * side, -side}, Plane{*o.height_mm * up, up},
+               Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, Plane{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
+               Plane{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
+    scene.front = Vector3d::UnitY();
+    for (const double sign : {1.0, -1.0}) {
+        scene.box.extend(*o.height_mm * up + sign * half_thickness * side);
+        add_seam(scene, false, -half_length, half_length, [&](double x) {
+            return CurvePoint{{x, sign * half_thickness / c, 0}, Vector3d::UnitZ(), sign * side};
+        });
+    }
+    return scene;
+}
+
+Scene make_s_curve(const SceneOptions& o) {
+    const double half_length = *o.length_mm / 2;
+    const double half_thickness = *o.thickness_mm / 2;
+    const double wave_number = 2 * kPi / *o.wavelength_mm;
+    const double reach = std::abs(*o.amplitude_mm) + half_thickness;
+    Scene scene;
+    add_plate(scene, half_length, reach + *o.margin_mm, o);
+    const SineWall left{*o.amplitude_mm, wave_number, half_thickness, 1};
+    const SineWall right{*o.amplitude_mm, wave_number, -half_thickness, -1};
+    add_solid(scene,
+              {left, right, Plane{*o.height_mm * Vector3d::UnitZ(), Vector3d::UnitZ()},
+               Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, Plane{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
+               Plane{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
+    scene.box.extend(Vector3d(0, 0, *o.height_mm));
+    scene.front = Vector3d::UnitY();
+    for (const SineWall& wall : {left, right}) {
+        add_seam(scene, false, -half_length, half_length, [&](double x) {
+            const Vector3d p(x, wall.offset + wall.amplitude * portable::sin(wave_number * x), 0);
+            return CurvePoint{p, Vector3d::UnitZ(), normal(wall, p)};
+        });
+    }
+    return scene;
+}
+
+/// Outline of a rectangle with rounded corners, by arc length from the middle of its +x side, counter-clockwise.
+CurvePoint box_outline(double half_x, double half_y, double radius, double s) {
+    const double straight[2] = {2 * (half_y - radius), 2 * (half_x - radius)};
+    const double arc = radius * kPi / 2;
+    s += straight[0] / 2;
+    for (int side = 0;; ++side) {
+        const auto [sin, cos] = portable::sincos((side % 4) * (kPi / 2));
+        const auto turned = [&, sn = sin, cs = cos](double x, double y) {
+            return Vector3d(cs * x - sn * y, sn * x + cs * y, 0);
+        };
+        const double out = side % 2 == 0 ? half_x : half_y;
+        const double length = straight[side % 2];
+        if (s <= length) {
+            return {turned(out, s - length / 2), Vector3d::UnitZ(), turned(1, 0)};
+        }
+        s -= length;
+        if (s <= arc) {
+            const auto [sa, ca] = portable::sincos(s / radius);
+            return {turned(out - radius + radius * ca, length / 2 + radius * sa), Vector3d::UnitZ(), turned(ca, sa)};
+        }
+        s -= arc;
+    }
+}
+
+/// The rounded box is the union of two blocks and four bars; their faces inside the union are never seen.
+Scene make_box_on_plate(const SceneOptions& o) {
+    const double half_x = *o.length_mm / 2;
+    const double half_y = *o.width_mm / 2;
+    const double radius = *o.corner_radius_mm;
+    const double height = *o.height_mm;
+    require(radius > 0 && radius < std::min(half_x, half_y),
+            "corner radius " + text(radius) + " mm does not fit the box; use one between 0 and half its shorter side");
+    Scene scene;
+    add_plate(scene, half_x + *o.margin_mm, half_y + *o.margin_mm, o);
+    add_block(scene, {-half_x, -half_y + radius, 0}, {half_x, half_y - radius, height});
+    add_block(scene, {-half_x + radius, -half_y, 0}, {half_x - radius, half_y, height});
+    for (const double x : {half_x - radius, radius - half_x}) {
+        for (const double y : {half_y - radius, radius - half_y}) {
+            add_bar(scene, {{x, y, 0}, Vector3d::UnitZ(), radius}, height);
+        }
+    }
+    const double around = 4 * (half_x + half_y - 2 * radius) + 2 * kPi * radius;
+    add_seam(scene, true, 0, around, [&](double s) { return box_outline(half_x, half_y, radius, s); });
+    return scene;
+}
+
+/// A branch bar leaning to +x in the plane y = offset; its points are
+/// (0, offset, 0) + radius (cos(phi) e1 + sin(phi) e2) + s axis.
+struct Branch {
+    double radius, offset, sin_lean, cos_lean;
+    Vector3d axis() const { return {sin_lean, 0, cos_lean}; }
+    Vector3d radial(const portable::SinCos& phi) const { return {phi.cos * cos_lean, phi.sin, -phi.cos * sin_lean}; }
+    /// Where the ruling at phi reaches the height z.
+    Vector3d at_height(const portable::SinCos& phi, double z) const {
+        const double s = (z + radius * phi.cos * sin_lean) / cos_lean;
+        const Vector3d p = Vector3d(0, offset, 0) + radius * radial(phi) + s * axis();
+        return {p.x(), p.y(), z};
+    }
+};
+
+Branch make_branch(const SceneOptions& o) {
+    const auto [s, c] = portable::sincos(radians(*o.lean_deg));
+    return {*o.radius_mm, o.offset_mm.value_or(0), s, c};
+}
+
+Scene make_pipe_on_plate(const SceneOptions& o) {
+    const Branch branch = make_branch(o);
+    const double tan_lean = branch.sin_lean / branch.cos_lean;
+    Scene scene;
+    add_plate(scene, branch.radius / branch.cos_lean + *o.margin_mm, branch.radius + *o.margin_mm, o);
+    // The bar's flat lower end must stay within the plate, so the plate's top cuts it.
+    const double length = *o.height_mm + branch.radius * std::abs(tan_lean);
+    const Cylinder cylinder{Vector3d::Zero(), branch.axis(), branch.radius};
+    add_solid(scene,
+              {cylinder, Plane{length * branch.axis(), branch.axis()}, Plane{Vector3d::Zero(), -Vector3d::UnitZ()}});
+    const Vector3d end = length * branch.axis();
+    scene.box.extend(
+        end + Vector3d(branch.radius * branch.cos_lean, branch.radius, branch.radius * std::abs(branch.sin_lean)));
+    scene.box.extend(end - Vector3d(branch.radius * branch.cos_lean, branch.radius, 0));
+    add_seam(scene, true, 0, 2 * kPi, [&](double angle) {
+        const auto phi = portable::sincos(angle);
+        return CurvePoint{branch.at_height(phi, 0), Vector3d::UnitZ(), branch.radial(phi)};
+    });
+    return scene;
+}
+
+Scene make_pipe_on_pipe(const SceneOptions& o) {
+    const Branch branch = make_branch(o);
+    const double header = *o.header_radius_mm;
+    require(branch.radius + std::abs(branch.offset) < header,
+            "branch radius " + text(branch.radius) + " mm and offset " + text(branch.offset) +
+                " mm together reach beyond the header's radius " + text(header) + " mm; make them smaller than it");
+    const auto seam = [&](double angle) {
+        const auto phi = portable::sincos(angle);
+        const double y = branch.offset + branch.radius * phi.sin;
+        const double z = std::sqrt(header * header - y * y);
+        return CurvePoint{branch.at_height(phi, z), Vector3d(0, y, z) / header, branch.radial(phi)};
+    };
+    Scene scene;
+    double highest = 0;  // of the seam, along the branch
+    Eigen::AlignedBox3d around;
+    for (int i = 0; i < 720; ++i) {
+        const Vector3d p = seam(i * (kPi / 360)).p;
+        highest = std::max(highest, p.dot(branch.axis()));
+        around.extend(p);
+    }
+    const double half_length = *o.header_length_mm / 2;
+    const double middle = (around.min().x() + around.max().x()) / 2;
+    require(half_length > around.sizes().x() / 2,
+            "header length " + text(2 * half_length) + " mm is shorter than the branch is wide; make it longer");
+    add_bar(scene, {{middle - half_length, 0, 0}, Vector3d::UnitX(), header}, 2 * half_length);
+    add_bar(scene, {{0, branch.offset, 0}, branch.axis(), branch.radius}, highest + *o.height_mm);
+    add_seam(scene, true, 0, 2 * kPi, seam);
+    return scene;
+}
+
+}  // namespace
+
+Fields describe(SceneOptions& o) {
+    return {{"kind", choice(o.kind, kSceneNames), "what stands before the scanner"},
+            {"vary", &o.vary, "let the seed vary the dimensions that are not set"},
+            {"length_mm", &o.length_mm, "length of the web, or of the box along x", above(0)},
+            {"width_mm", &o.width_mm, "width of the box along y", above(0)},
+            {"height_mm", &o.height_mm, "height of web, box or branch above the other part", above(0)},
+            {"thickness_mm", &o.thickness_mm, "thickness of the web", above(0)},
+            {"lean_deg", &o.lean_deg, "lean of web or branch from the upright", within(-60, 60)},
+            {"amplitude_mm", &o.amplitude_mm, "amplitude of the S-curve", at_least(0)},
+            {"wavelength_mm", &o.wavelength_mm, "wavelength of the S-curve", above(0)},
+            {"corner_radius_mm", &o.corner_radius_mm, "radius of the box's upright edges", above(0)},
+            {"header_radius_mm", &o.header_radius_mm, "radius of the pipe that carries the branch", above(0)},
+            {"header_length_mm", &o.header_length_mm, "length of the pipe that carries the branch", above(0)},
+            {"radius_mm", &o.radius_mm, "radius of the branch", above(0)},
+            {"offset_mm", &o.offset_mm, "offset of the branch's axis from the header's"},
+            {"plate_thickness_mm", &o.plate_thickness_mm, "thickness of the plate", above(0)},
+            {"margin_mm", &o.margin_mm, "width of plate around the part", above(0)},
+            {"random_pose", &o.random_pose, "turn the part any way and move it off the origin"},
+            {"max_offset_mm", &o.max_offset_mm, "largest offset of the part from the origin, per axis", at_least(0)}};
+}
+
+SceneOptions resolved(const SceneOptions& options, std::uint64_t seed) {
+    SceneOptions o = options;
+    const Random random(seed, kDimensionStream);
+    std::uint64_t draw = 0;
+    for (const Usual& usual : usual_dimensions(o.kind)) {
+        const double shift = o.vary ? random.uniform(draw, -1, 1) : 0;
+        ++draw;  // also for a dimension that is set, so that setting one does not change the others
+        std::optional<double>& dimension = o.*usual.dimension;
+        if (!dimension) {
+            dimension = usual.value * (1 + usual.spread * shift) * (usual.of_header ? *o.header_radius_mm : 1);
+        }
+    }
+    if (o.header_radius_mm && !o.header_length_mm) {
+        o.header_length_mm = (o.vary ? random.uniform(draw, 2.5, 3) : 2.75) * 2 * *o.radius_mm;
+    }
+    return o;
+}
+
+Scene make_scene(const SceneOptions& options) {
+    switch (options.kind) {
+        case SceneKind::tee:
+            return make_tee(options);
+        case SceneKind::s_curve:
+            return make_s_curve(options);
+        case SceneKind::box_on_plate:
+            return make_box_on_plate(options);
+        case SceneKind::pipe_on_plate:
+            return make_pipe_on_plate(options);
+        case SceneKind::pipe_on_pipe:
+        case SceneKind::pipe_on_pipe_oblique:
+        case SceneKind::pipe_on_pipe_equal:
+            return make_pipe_on_pipe(options);
+    }
+    ensure(false, "every scene kind can be made");
+    return {};
+}
+
+Truth transformed(const Truth& truth, const Eigen::Isometry3d& to_from_here) {
+    Truth moved = truth;
+    const Eigen::Matrix3d turn = to_from_here.linear();
+    for (TruthSeam& seam : moved.seams) {
+        for (TruthPoint& point : seam.points) {
+            point = {to_from_here * point.p, turn * point.tangent, turn * point.n1, turn * point.n2};
+        }
+    }
+    return moved;
+}
+
+}  // namespace seampath

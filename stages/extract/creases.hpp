@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stages/extract/surfels.hpp"
+
+namespace seampath::detail {
+
+/// A place where two planes explain the neighbourhood and one does not: a seed, good to a fraction of the neighbourhood,
+/// never reported as a seam point.
+struct Crease {
+    Eigen::Vector3d p;      ///< on the line in which the planes meet, mm
+    Eigen::Vector3d t;      ///< unit, along n1 x n2
+    Eigen::Vector3d n1;     ///< unit, out of the material
+    Eigen::Vector3d n2;
+    double weight = 0;      ///< surfels explained
+    bool concave = false;
+};
+
+/// Robust two-plane fits at every surfel that is not flat, in the order of the surfels. `noise` is the scan's, mm.
+std::vector<Crease> find_creases(const Surfels& surfels, double noise);
+
+}  // namespace seampath::detail

@@ -1,0 +1,119 @@
+#include "stages/extract/extract.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "stages/error.hpp"
+#include "stages/extract/creases.hpp"
+#include "stages/extract/join.hpp"
+#include "stages/extract/measure.hpp"
+#include "stages/extract/surfels.hpp"
+#include "stages/extract/track.hpp"
+#include "stages/geometry/robust.hpp"
+#include "stages/text.hpp"
+
+namespace seampath {
+namespace {
+
+using namespace detail;
+
+constexpr std::size_t kLeastPoints = 200;
+
+// The scan's own scale sets the size of the cells: some twenty points each, and quieter than the noise.
+double cell_size(const ScanScale& scale) { return std::max(4 * scale.spacing, 3 * scale.noise); }
+
+// Concave creases, heaviest first. Where nothing told the air from the material, the joints do: a scan made to find a seam
+// shows more of concave joints than of convex edges.
+std::vector<Crease> seeds_of(std::vector<Crease> creases, bool oriented) {
+    double balance = 0;
+    for (const Crease& c : creases) {
+        balance += c.concave ? c.weight : -c.weight;
+    }
+    if (!oriented && balance < 0) {
+        for (Crease& c : creases) {
+            c.concave = !c.concave;
+            c.n1 = -c.n1;
+            c.n2 = -c.n2;
+        }
+    }
+    std::erase_if(creases, [](const Crease& c) { return !c.concave; });
+    std::stable_sort(creases.begin(), creases.end(), [](const Crease& a, const Crease& b) { return a.weight > b.weight; });
+    return creases;
+}
+
+std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>& seeds) {
+    std::vector<Track> tracks;
+    std::vector<char> used(seeds.size(), 0);
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        if (used[i]) {
+            continue;
+        }
+        auto track = follow(tracker, seeds[i], tracks);
+        if (!track) {
+            continue;
+        }
+        // Seeds along the new track have nothing more to tell.
+        for (std::size_t j = i + 1; j < seeds.size(); ++j) {
+            used[j] = used[j] || lies_on(*track, {seeds[j].p, seeds[j].n1, seeds[j].n2}, 2 * tracker.step);
+        }
+        tracks.push_back(std::move(*track));
+    }
+    return tracks;
+}
+
+double length_of(const Track& track) {
+    double length = 0;
+    for (std::size_t i = 1; i < track.points.size(); ++i) {
+        length += (track.points[i].section.p - track.points[i - 1].section.p).norm();
+    }
+    return length;
+}
+
+}  // namespace
+
+Fields describe(ExtractOptions& o) {
+    return {{"joint", choice(o.joint, kJointChoiceNames), "joint kind to look for"},
+            {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
+            {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
+}
+
+Extraction extract(const Scan& scan, const ExtractOptions& options) {
+    if (options.joint != JointChoice::automatic && options.joint != JointChoice::fillet) {
+        throw InputError("extract: joint kind '" + std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
+                         "' is not followed yet; fillet is; set extract.joint to auto or fillet");
+    }
+    if (scan.points.size() < kLeastPoints) {
+        throw InputError("extract: the scan has " + std::to_string(scan.points.size()) + " points; at least " +
+                         std::to_string(kLeastPoints) + " are needed to fit two surfaces; scan the part with a finer pitch");
+    }
+    Extraction result;
+    const ScanScale scale = estimate_scale(scan.points);
+    result.spacing_mm = scale.spacing;
+    result.noise_mm = scale.noise;
+    if (scale.spacing <= 0) {
+        throw InputError("extract: all points lie in one place; a part with surfaces was needed; check the file");
+    }
+    const PointGrid grid(scan.points, cell_size(scale));
+    Surfels surfels = make_surfels(grid, 4.5 * grid.cell());
+    const bool oriented = orient(surfels, grid, scan);
+    result.orientation_reason = surfels.orientation_reason;
+    const std::vector<Crease> seeds = seeds_of(find_creases(surfels, scale.noise), oriented);
+
+    const SectionWindow window = default_window(scale);
+    const Tracker tracker{grid, scale, window, options.station_mm > 0 ? options.station_mm : grid.cell()};
+    const double least_length = options.min_length_mm > 0 ? options.min_length_mm : 2 * window.away;
+    for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
+        const double length = length_of(track);
+        if (length < least_length) {
+            result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least_length, 1) + " mm");
+            continue;
+        }
+        result.seams.push_back(measure_track(tracker, track, scan.origin_mm));
+    }
+    std::stable_sort(result.seams.begin(), result.seams.end(), [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
+    return result;
+}
+
+}  // namespace seampath

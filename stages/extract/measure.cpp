@@ -1,0 +1,203 @@
+#include "stages/extract/measure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "stages/geometry/parallel.hpp"
+#include "stages/geometry/robust.hpp"
+
+namespace seampath::detail {
+namespace {
+
+
+// Places at equal distances, along the polyline of the track; open tracks keep both ends.
+std::vector<TrackPoint> equal_steps(const Track& track, double step) {
+    std::vector<TrackPoint> way = track.points;
+    if (track.closed) {
+        way.push_back(way.front());
+    }
+    std::vector<double> station(way.size(), 0);
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        station[i] = station[i - 1] + (way[i].section.p - way[i - 1].section.p).norm();
+    }
+    const auto count = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(station.back() / step)));
+    std::vector<TrackPoint> places;
+    for (std::size_t k = 0, i = 1; k < count + (track.closed ? 0 : 1); ++k) {
+        const double s = station.back() * static_cast<double>(k) / static_cast<double>(count);
+        while (i + 1 < way.size() && station[i] < s) {
+            ++i;
+        }
+        const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
+        const Section &a = way[i - 1].section, &b = way[i].section;
+        TrackPoint place = x < 0.5 ? way[i - 1] : way[i];
+        place.section = {(1 - x) * a.p + x * b.p, ((1 - x) * a.n1 + x * b.n1).normalized(), ((1 - x) * a.n2 + x * b.n2).normalized()};
+        places.push_back(place);
+    }
+    return places;
+}
+
+// Where a stretch of points, given by their distances ahead, ends: the first bin that holds less than half of what the bins
+// before it hold, with the share of that bin that is filled. Stray points beyond the end do not move it.
+double end_of(const std::vector<double>& ahead, double bin, double look) {
+    std::vector<double> count(static_cast<std::size_t>(look / bin) + 1, 0);
+    for (const double x : ahead) {
+        count[std::min(count.size() - 1, static_cast<std::size_t>(x / bin))] += 1;
+    }
+    for (std::size_t i = 0; i + 1 < count.size(); ++i) {
+        std::vector<double> before(count.begin(), count.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(i, 2)));
+        const double usual = quantile(before, 0.5);
+        if (count[i] < 0.5 * usual && count[i + 1] < 0.5 * usual) {
+            // The bin before may be the one in which the surface ends; so may this one.
+            const double partly = i > 0 ? std::min(count[i - 1] / usual, 1.0) - 1 : 0;
+            return bin * (static_cast<double>(i) + partly + count[i] / usual);
+        }
+    }
+    return look;
+}
+
+// How far ahead of an inner place, in the given direction, the shorter of its two flanks reaches at the seam; mm. A flank
+// may end at a slant: the ends of strips at growing distance from the seam are carried on to the seam by a straight line.
+double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direction, double look) {
+    constexpr int kStrips = 4;
+    const auto fit = fit_section(tracker.grid, tracker.scale, place.section, tracker.window);
+    if (!fit) {
+        return 0;
+    }
+    const Section& at = place.section;
+    const Eigen::Vector3d along = at.n1.cross(at.n2).normalized(), ahead = direction * along;
+    const Eigen::Vector3d d[2] = {along.cross(at.n1), at.n2.cross(along)}, n[2] = {at.n1, at.n2};
+    double reach = look;
+    for (int k = 0; k < 2; ++k) {
+        const Flank& flank = fit->flank[k];
+        const double near = flank.window.band, strip = (flank.window.away - near) / kStrips;
+        std::array<std::vector<double>, kStrips> s;
+        tracker.grid.for_points_in_ball(at.p, std::hypot(flank.window.away, look), [&](const Eigen::Vector3f& q, double) {
+            const Eigen::Vector3d v = q.cast<double>() - at.p;
+            const double x = v.dot(ahead), u = v.dot(d[k]);
+            if (x >= 0 && x <= look && u >= near && u < near + kStrips * strip) {
+                const double z = flank.fit.value(u / flank.window.away, direction * x / flank.window.along);
+                // Beyond the window the fitted quadric is a guess: let the gate open.
+                const double gate = 4 * tracker.scale.noise + 0.1 * std::max(0.0, x - flank.window.along);
+                if (std::abs(v.dot(n[k]) - z) <= gate) {
+                    s[static_cast<std::size_t>((u - near) / strip)].push_back(x);
+                }
+            }
+        });
+        // Least squares of end = a + b u over the strips; a is the end at the seam.
+        double su = 0, se = 0, suu = 0, sue = 0, low = look, high = 0;
+        for (int i = 0; i < kStrips; ++i) {
+            const double u = near + (i + 0.5) * strip, e = end_of(s[static_cast<std::size_t>(i)], 2 * tracker.scale.spacing, look);
+            su += u, se += e, suu += u * u, sue += u * e;
+            low = std::min(low, e), high = std::max(high, e);
+        }
+        const double slope = (kStrips * sue - su * se) / (kStrips * suu - su * su);
+        reach = std::min(reach, std::clamp((se - slope * su) / kStrips, low - (high - low), high + (high - low)));
+    }
+    return reach;
+}
+
+// Shortens or lengthens one end so that it lies where the first flank ends. Judged from a few steps inside, where both
+// flanks are whole: fits at the end itself have data on one side only.
+void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front) {
+    constexpr std::size_t kInside = 4;
+    if (front) {
+        std::reverse(way.begin(), way.end());
+    }
+    while (way.size() > 2 * kInside && way.back().modelled) {
+        way.pop_back();
+    }
+    const TrackPoint inner = way[way.size() - 1 - kInside];
+    const double direction = front ? -1 : 1;
+    const double look = 3 * static_cast<double>(kInside) * tracker.step;
+    // A point distance short of the edge: no torch should be sent over it.
+    const double reach = reach_ahead(tracker, inner, direction, look) - tracker.scale.spacing;
+    const auto ahead = [&](const TrackPoint& p) { return direction * (p.section.p - inner.section.p).dot(inner.t); };
+    if (reach + tracker.scale.spacing >= look) {
+        // The flanks go on: following ended for another reason, and that reason stands.
+        if (front) {
+            std::reverse(way.begin(), way.end());
+        }
+        return;
+    }
+    while (way.size() > 4 && ahead(way.back()) > reach - 0.5 * tracker.step) {
+        way.pop_back();
+    }
+    const TrackPoint& last = way.back();
+    const double rest = (reach - ahead(last)) / std::max(0.3, last.t.dot(inner.t));
+    const Section guess = carry_on(way, direction, rest);
+    auto end = tracker.measure(guess, 3);
+    if (!end || end->sigma > 2 * last.sigma || (end->section.p - guess.p).norm() > 3 * last.sigma) {
+        end = last;
+        end->section = guess;
+        end->sigma *= 2;
+    }
+    way.push_back(*end);
+    if (front) {
+        std::reverse(way.begin(), way.end());
+    }
+}
+
+// Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
+std::vector<std::optional<TrackPoint>> measure_places(const Tracker& tracker, const std::vector<TrackPoint>& places) {
+    std::vector<double> support[2];
+    for (const TrackPoint& place : places) {
+        if (!place.modelled) {
+            support[0].push_back(place.support[0]);
+            support[1].push_back(place.support[1]);
+        }
+    }
+    const double least[2] = {0.1 * quantile(support[0], 0.5), 0.1 * quantile(support[1], 0.5)};
+    std::vector<std::optional<TrackPoint>> measured(places.size());
+    parallel_for(places.size(), 4, [&](std::size_t i) {
+        auto point = tracker.measure(places[i].section, 3);
+        const bool seen = point && (point->section.p - places[i].section.p).norm() < tracker.step;
+        const bool supported = seen && point->support[0] >= least[0] && point->support[1] >= least[1];
+        if (places[i].modelled ? supported : seen) {
+            measured[i] = std::move(point);
+        } else if (places[i].modelled) {
+            measured[i] = places[i];
+        }
+    });
+    return measured;
+}
+
+// Without the places whose sigma stands out from their neighbours': they saw something else.
+std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPoint>>& measured) {
+    constexpr std::size_t kNeighbours = 12;
+    constexpr double kStandsOut = 4;
+    std::vector<TrackPoint> way;
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+        std::vector<double> sigma;
+        for (std::size_t j = i > kNeighbours ? i - kNeighbours : 0; j < std::min(measured.size(), i + kNeighbours + 1); ++j) {
+            if (measured[j]) {
+                sigma.push_back(measured[j]->sigma);
+            }
+        }
+        if (measured[i] && (measured[i]->modelled || measured[i]->sigma <= kStandsOut * quantile(sigma, 0.5))) {
+            way.push_back(*measured[i]);
+        }
+    }
+    return way;
+}
+
+}  // namespace
+
+Seam measure_track(const Tracker& tracker, const Track& track, const Eigen::Vector3d& origin) {
+    std::vector<TrackPoint> way = without_outliers(measure_places(tracker, equal_steps(track, tracker.step)));
+    if (!track.closed && way.size() > 8) {
+        place_end(tracker, way, false);
+        place_end(tracker, way, true);
+    }
+    Seam seam;
+    seam.closed = track.closed;
+    double bend = 0;
+    for (const TrackPoint& point : way) {
+        seam.points.push_back({origin + point.section.p, point.section.n1, point.section.n2, point.sigma, point.modelled});
+        bend += point.bend;
+    }
+    seam.confidence = way.empty() ? 0 : std::min(1.0, bend / static_cast<double>(way.size()) / 0.5);
+    return seam;
+}
+
+}  // namespace seampath::detail

@@ -1,0 +1,215 @@
+#include "stages/extract/surfels.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include <Eigen/Dense>
+
+#include "stages/geometry/parallel.hpp"
+
+namespace seampath::detail {
+namespace {
+
+constexpr std::size_t kLeastNeighbours = 6;
+
+void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
+    if (surfel.neighbours.size() < kLeastNeighbours) {
+        return;
+    }
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const std::uint32_t j : surfel.neighbours) {
+        mean += all[j].p;
+    }
+    mean /= static_cast<double>(surfel.neighbours.size());
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const std::uint32_t j : surfel.neighbours) {
+        const Eigen::Vector3d d = all[j].p - mean;
+        scatter += d * d.transpose();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(scatter);
+    surfel.n = solver.eigenvectors().col(0);
+    surfel.flatness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(surfel.neighbours.size()));
+}
+
+struct Edge {
+    float cost;
+    std::uint32_t a, b;
+    bool operator<(const Edge& o) const { return std::tie(cost, a, b) < std::tie(o.cost, o.a, o.b); }
+};
+
+// Disjoint sets in which each element knows whether its normal is turned against that of its set's root.
+class TurnedSets {
+public:
+    explicit TurnedSets(std::size_t n) : parent_(n), turned_(n, 0) { std::iota(parent_.begin(), parent_.end(), 0u); }
+    std::pair<std::uint32_t, bool> find(std::uint32_t i) {
+        std::uint32_t root = i;
+        bool turned = false;
+        while (parent_[root] != root) {
+            turned ^= turned_[root] != 0;
+            root = parent_[root];
+        }
+        bool rest = turned;
+        while (parent_[i] != root && i != root) {
+            const std::uint32_t up = parent_[i];
+            const bool own = turned_[i] != 0;
+            parent_[i] = root;
+            turned_[i] = rest;
+            rest ^= own;
+            i = up;
+        }
+        return {root, turned};
+    }
+    void join(std::uint32_t a, std::uint32_t b, bool opposite) {
+        auto [ra, ta] = find(a);
+        auto [rb, tb] = find(b);
+        if (ra != rb) {
+            if (ra > rb) {
+                std::swap(ra, rb);
+            }
+            parent_[rb] = ra;
+            turned_[rb] = (ta != tb) != opposite;
+        }
+    }
+
+private:
+    std::vector<std::uint32_t> parent_;
+    std::vector<char> turned_;
+};
+
+// Whether a ray from p along d meets the scan beyond `start`, by steps of half a cell through the occupied cells.
+bool blocked(const PointGrid& grid, const Eigen::Vector3d& p, const Eigen::Vector3d& d, double start, double end) {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(grid.cell() * 0.5);
+    for (double x = start; x < end; x += grid.cell()) {
+        bool hit = false;
+        const Eigen::Vector3d q = p + x * d;
+        grid.for_cells_in_box(q - half, q + half, [&](std::size_t cell) { hit |= grid.points(cell).size() > 2; });
+        if (hit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void orient_to_sensor(Surfels& surfels, const Eigen::Vector3d& sensor) {
+    for (Surfel& s : surfels.at) {
+        if (s.n.dot(sensor - s.p) < 0) {
+            s.n = -s.n;
+        }
+    }
+}
+
+void orient_to_file_normals(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
+    for (std::size_t cell = 0; cell < surfels.at.size(); ++cell) {
+        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+        for (std::size_t k = 0; k < grid.points(cell).size(); ++k) {
+            sum += scan.normals[grid.source(grid.first_point(cell) + k)];
+        }
+        if (surfels.at[cell].n.dot(sum.cast<double>()) < 0) {
+            surfels.at[cell].n = -surfels.at[cell].n;
+        }
+    }
+}
+
+// Consistent signs along the spanning tree that crosses the least bent places first. Returns the piece of each surfel.
+std::vector<std::uint32_t> make_consistent(Surfels& surfels) {
+    std::vector<Surfel>& at = surfels.at;
+    std::vector<Edge> edges;
+    for (std::uint32_t a = 0; a < at.size(); ++a) {
+        for (const std::uint32_t b : at[a].neighbours) {
+            if (b > a && at[a].n.squaredNorm() > 0 && at[b].n.squaredNorm() > 0) {
+                // Normals that agree cost nothing; those that would have to jump over a thin wall cost more the further apart.
+                const double distance = (at[a].p - at[b].p).norm() / surfels.radius;
+                edges.push_back({static_cast<float>((1 - std::abs(at[a].n.dot(at[b].n))) * (1 + distance) + 1e-3 * distance), a, b});
+            }
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    TurnedSets sets(at.size());
+    for (const Edge& e : edges) {
+        sets.join(e.a, e.b, at[e.a].n.dot(at[e.b].n) < 0);
+    }
+    std::vector<std::uint32_t> piece(at.size());
+    for (std::uint32_t i = 0; i < at.size(); ++i) {
+        const auto [root, turned] = sets.find(i);
+        piece[i] = root;
+        if (turned) {
+            at[i].n = -at[i].n;
+        }
+    }
+    return piece;
+}
+
+// Per piece: how many more of its normals are free than of their opposites.
+bool turn_outwards(Surfels& surfels, const PointGrid& grid, const std::vector<std::uint32_t>& piece) {
+    std::vector<Surfel>& at = surfels.at;
+    const Eigen::Vector3d low = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
+    const Eigen::Vector3d high = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
+    const double reach = std::min((high - low).norm(), 400 * grid.cell());
+    const std::size_t stride = std::max<std::size_t>(1, at.size() / 4000);
+    std::vector<int> vote(at.size(), 0);
+    parallel_for((at.size() + stride - 1) / stride, 32, [&](std::size_t k) {
+        const Surfel& s = at[k * stride];
+        if (s.n.squaredNorm() > 0) {
+            vote[k * stride] = static_cast<int>(blocked(grid, s.p, -s.n, surfels.radius, reach)) -
+                               static_cast<int>(blocked(grid, s.p, s.n, surfels.radius, reach));
+        }
+    });
+    std::vector<int> votes(at.size(), 0), size(at.size(), 0);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        votes[piece[i]] += vote[i];
+        ++size[piece[i]];
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if (votes[piece[i]] < 0) {
+            at[i].n = -at[i].n;
+        }
+    }
+    // The largest piece speaks for the scan: without at least one ray in fifty deciding, either side may be the air.
+    const auto largest = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    return std::abs(votes[largest]) * 50 >= size[largest] / static_cast<int>(stride);
+}
+
+}  // namespace
+
+Surfels make_surfels(const PointGrid& grid, double radius) {
+    Surfels surfels;
+    surfels.radius = radius;
+    surfels.at.resize(grid.cells());
+    parallel_for(grid.cells(), 256, [&](std::size_t i) { surfels.at[i].p = grid.mean(i); });
+    parallel_for(grid.cells(), 64, [&](std::size_t i) {
+        Surfel& s = surfels.at[i];
+        const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
+        grid.for_cells_in_box(s.p - reach, s.p + reach, [&](std::size_t j) {
+            if ((surfels.at[j].p - s.p).squaredNorm() <= radius * radius) {
+                s.neighbours.push_back(static_cast<std::uint32_t>(j));
+            }
+        });
+        fit_plane(s, surfels.at);
+    });
+    return surfels;
+}
+
+bool orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
+    if (surfels.at.empty()) {
+        return false;
+    }
+    if (!scan.normals.empty()) {
+        orient_to_file_normals(surfels, grid, scan);
+        surfels.orientation_reason = "air side from the normals in the file";
+        return true;
+    }
+    if (scan.sensor_mm) {
+        orient_to_sensor(surfels, *scan.sensor_mm - scan.origin_mm);
+        surfels.orientation_reason = "air side from the sensor's place in the file";
+        return true;
+    }
+    const std::vector<std::uint32_t> piece = make_consistent(surfels);
+    const bool evident = turn_outwards(surfels, grid, piece);
+    surfels.orientation_reason = evident ? "air side is the one to which the surfaces are open"
+                                         : "the scan is open to both sides; the air is taken to be where the joints are concave";
+    return evident;
+}
+
+}  // namespace seampath::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stages/geometry/grid.hpp"
+#include "stages/geometry/scale.hpp"
+#include "stages/types.hpp"
+
+namespace seampath::detail {
+
+/// The scan, thinned to one element a cell: what coarse work looks at.
+struct Surfel {
+    Eigen::Vector3d p;                        ///< mean of the cell's points, relative to the scan's origin, mm
+    Eigen::Vector3d n{0, 0, 0};               ///< unit, out of the material; zero where too few neighbours
+    double flatness = 0;                      ///< rms distance of the neighbours from their plane, mm
+    std::vector<std::uint32_t> neighbours;    ///< surfels within the radius, itself included, ascending
+};
+
+struct Surfels {
+    double radius = 0;                        ///< of the neighbourhoods, mm
+    std::vector<Surfel> at;
+    std::string orientation_reason;           ///< one sentence: how the side of the air was found
+};
+
+/// Surfels of a grid with plane normals over `radius`, not yet told which side is the air.
+Surfels make_surfels(const PointGrid& grid, double radius);
+
+/// Turns all normals to the side of the air: by the sensor's place or the file's normals if there are any; otherwise
+/// normals are made consistent over each connected piece (minimum spanning tree, Hoppe et al. 1992) and each piece is turned
+/// so that fewer of its normals run into other parts of the scan: what a scanner saw is open to the outside, and the inside
+/// of a box, web or pipe is not. False when a piece gave no evidence; then either side may be the air.
+bool orient(Surfels& surfels, const PointGrid& grid, const Scan& scan);
+
+}  // namespace seampath::detail

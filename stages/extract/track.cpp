@@ -1,0 +1,135 @@
+#include "stages/extract/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "stages/error.hpp"
+#include "stages/geometry/robust.hpp"
+
+namespace seampath::detail {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kLeastBend = 5 * kDegree;         // flatter than this two flanks are one surface to a welder
+constexpr double kMostTurn = 35 * kDegree;         // of a flank normal against its prediction, per step
+constexpr double kLeastSupport = 0.1;              // of the density that the flank had so far: four views may become one
+constexpr std::size_t kMostSteps = 200000;
+
+bool similar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle) { return a.dot(b) > std::cos(angle); }
+
+bool supported(const std::vector<TrackPoint>& way, const TrackPoint& point) {
+    for (int k = 0; k < 2; ++k) {
+        std::vector<double> before;
+        for (std::size_t i = way.size() > 15 ? way.size() - 15 : 0; i < way.size(); ++i) {
+            if (!way[i].modelled) {
+                before.push_back(way[i].support[k]);
+            }
+        }
+        if (point.support[k] < kLeastSupport * quantile(before, 0.5)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool believable(const Tracker& tracker, const Section& predicted, const TrackPoint& point) {
+    const double reach = 0.7 * tracker.step + 3 * tracker.scale.noise + 4 * point.sigma;
+    return point.bend >= kLeastBend && (point.section.p - predicted.p).norm() <= reach &&
+           similar(point.section.n1, predicted.n1, kMostTurn) && similar(point.section.n2, predicted.n2, kMostTurn);
+}
+
+// Near, and with the same two flanks in either order.
+bool same_place(const TrackPoint& q, const Section& place, double reach) {
+    return (q.section.p - place.p).squaredNorm() < reach * reach &&
+           ((similar(q.section.n1, place.n1, kMostTurn) && similar(q.section.n2, place.n2, kMostTurn)) ||
+            (similar(q.section.n1, place.n2, kMostTurn) && similar(q.section.n2, place.n1, kMostTurn)));
+}
+
+bool met(const std::vector<Track>& taken, const Section& place, double reach) {
+    return std::any_of(taken.begin(), taken.end(), [&](const Track& track) { return lies_on(track, place, reach); });
+}
+
+enum class End { open, closed };
+
+// Extends `way` in one direction (+1: along n1 x n2) as far as the joint is measured. Coming back to its own course it is
+// closed; what then lies before the place where it came back is a piece travelled twice.
+End advance(const Tracker& tracker, std::vector<TrackPoint>& way, double direction, const std::vector<Track>& taken) {
+    constexpr std::size_t kBehind = 10;      // the latest points are near in any case
+    while (way.size() < kMostSteps) {
+        const double step = std::min(tracker.step, std::max(0.25 * tracker.step, 0.7 * way.back().along));
+        const Section predicted = carry_on(way, direction, step);
+        const auto point = tracker.measure(predicted, 2);
+        if (!point || !believable(tracker, predicted, *point) || !supported(way, *point) || met(taken, point->section, 0.7 * step)) {
+            return End::open;
+        }
+        for (std::size_t i = 0; i + kBehind < way.size(); ++i) {
+            if (same_place(way[i], point->section, 0.7 * step)) {
+                way.erase(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(i));
+                return End::closed;
+            }
+        }
+        way.push_back(*point);
+    }
+    return End::open;
+}
+
+}  // namespace
+
+std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) const {
+    const auto fit = settle_section(grid, scale, guess, window, rounds);
+    if (!fit) {
+        return std::nullopt;
+    }
+    TrackPoint point;
+    point.section = fit->section;
+    point.t = fit->t;
+    point.sigma = fit->sigma;
+    point.bend = fit->bend;
+    point.along = std::min(fit->flank[0].window.along, fit->flank[1].window.along);
+    point.support[0] = fit->flank[0].slab_points;
+    point.support[1] = fit->flank[1].slab_points;
+    return point;
+}
+
+Section carry_on(const std::vector<TrackPoint>& way, double direction, double step) {
+    const TrackPoint& last = way.back();
+    Section next = last.section;
+    Eigen::Vector3d t = direction * last.t;
+    if (way.size() > 4) {
+        // Over four points: one point's noise must not steer.
+        const TrackPoint& before = way[way.size() - 5];
+        const double distance = (last.section.p - before.section.p).norm();
+        const double ratio = distance > 0 ? step / distance : 0;
+        t += 0.5 * ratio * direction * (last.t - before.t);
+        next.n1 = (last.section.n1 + ratio * (last.section.n1 - before.section.n1)).normalized();
+        next.n2 = (last.section.n2 + ratio * (last.section.n2 - before.section.n2)).normalized();
+    }
+    next.p += step * t.normalized();
+    return next;
+}
+
+bool lies_on(const Track& track, const Section& place, double reach) {
+    return std::any_of(track.points.begin(), track.points.end(), [&](const TrackPoint& q) { return same_place(q, place, reach); });
+}
+
+std::optional<Track> follow(const Tracker& tracker, const Crease& seed, const std::vector<Track>& taken) {
+    const auto first = tracker.measure({seed.p, seed.n1, seed.n2}, 6);
+    if (!first || first->bend < kLeastBend || (first->section.p - seed.p).norm() > 2 * tracker.step ||
+        !similar(first->section.n1, seed.n1, kMostTurn) || !similar(first->section.n2, seed.n2, kMostTurn) ||
+        met(taken, first->section, tracker.step)) {
+        return std::nullopt;
+    }
+    Track track;
+    track.points = {*first};
+    if (advance(tracker, track.points, 1, taken) == End::closed) {
+        track.closed = true;
+        return track;
+    }
+    std::reverse(track.points.begin(), track.points.end());
+    track.closed = advance(tracker, track.points, -1, taken) == End::closed;
+    std::reverse(track.points.begin(), track.points.end());
+    return track;
+}
+
+}  // namespace seampath::detail

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stages/extract/creases.hpp"
+#include "stages/geometry/section.hpp"
+
+namespace seampath::detail {
+
+/// One measured place of a seam that is being followed.
+struct TrackPoint {
+    Section section;
+    Eigen::Vector3d t{0, 0, 0};       ///< unit, direction of travel, n1 x n2
+    double sigma = 0;                 ///< mm
+    double bend = 0;                  ///< rad
+    double along = 0;                 ///< mm, half length over which the flanks were fitted
+    double support[2] = {0, 0};       ///< points per mm^2 of each flank at this very place
+    bool modelled = false;            ///< no support here, but before and after
+};
+
+struct Track {
+    bool closed = false;
+    std::vector<TrackPoint> points;
+};
+
+/// What following needs to know of the scan.
+struct Tracker {
+    const PointGrid& grid;
+    ScanScale scale;
+    SectionWindow window;
+    double step = 0;          ///< mm between track points
+
+    std::optional<TrackPoint> measure(const Section& guess, int rounds) const;
+};
+
+/// The section `step` mm beyond the last point of the way, by carrying on its direction and the way it turned over the last
+/// points. `direction` is +1 when the way runs along n1 x n2, else -1.
+Section carry_on(const std::vector<TrackPoint>& way, double direction, double step);
+
+/// Follows the joint from the seed both ways, by prediction and measurement, until a flank ends, the joint turns flat, or it
+/// comes back to its start. `taken` are tracks found before: where one of them is met, this one ends. Empty when the seed
+/// does not measure as a joint.
+std::optional<Track> follow(const Tracker& tracker, const Crease& seed, const std::vector<Track>& taken);
+
+/// Whether a place with these normals lies on the track already, within `reach` mm.
+bool lies_on(const Track& track, const Section& place, double reach);
+
+}  // namespace seampath::detail

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace seampath {
+
+/// Calls f(i) for i in [0, n) on all processors, in blocks of `block`. Deterministic as long as f(i) writes only to
+/// places that belong to i. The first exception is rethrown.
+template <class F>
+void parallel_for(std::size_t n, std::size_t block, F&& f) {
+    const std::size_t threads = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), (n + block - 1) / block);
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr failure;
+    std::mutex failure_guard;
+    const auto work = [&] {
+        try {
+            for (std::size_t begin = next.fetch_add(block); begin < n; begin = next.fetch_add(block)) {
+                for (std::size_t i = begin; i < std::min(n, begin + block); ++i) {
+                    f(i);
+                }
+            }
+        } catch (...) {
+            const std::lock_guard lock(failure_guard);
+            failure = failure ? failure : std::current_exception();
+            next = n;
+        }
+    };
+    std::vector<std::jthread> others;
+    for (std::size_t k = 1; k < threads; ++k) {
+        others.emplace_back(work);
+    }
+    work();
+    others.clear();
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+}
+
+}  // namespace seampath

@@ -1,0 +1,82 @@
+#include "stages/geometry/robust.hpp"
+
+namespace seampath {
+namespace {
+
+constexpr double kTukey = 4.685;
+constexpr double kMadToSigma = 1.4826;
+constexpr int kRounds = 6;
+
+}  // namespace
+
+bool QuadraticFit::least_squares() {
+    // Moments first: the normal matrix of a quadratic in two variables has 15 different entries.
+    double m[5][5] = {}, z[3][3] = {};
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+        const double w = weight_[i];
+        if (w == 0) {
+            continue;
+        }
+        const double u = u_[i], s = s_[i];
+        double wu = w;
+        for (int a = 0; a <= 4; ++a, wu *= u) {
+            double wus = wu;
+            for (int b = 0; a + b <= 4; ++b, wus *= s) {
+                m[a][b] += wus;
+                if (a + b <= 2) {
+                    z[a][b] += wus * z_[i];
+                }
+            }
+        }
+    }
+    static constexpr int power[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+    Coefficients right;
+    for (int i = 0; i < 6; ++i) {
+        right[i] = z[power[i][0]][power[i][1]];
+        for (int j = 0; j < 6; ++j) {
+            normal_(i, j) = m[power[i][0] + power[j][0]][power[i][1] + power[j][1]];
+        }
+    }
+    const Eigen::LDLT<Normal> ldlt(normal_);
+    const auto pivots = ldlt.vectorD();
+    if (ldlt.info() != Eigen::Success || !(pivots.minCoeff() > 1e-10 * pivots.maxCoeff())) {
+        return false;
+    }
+    c_ = ldlt.solve(right);
+    return c_.allFinite();
+}
+
+bool QuadraticFit::solve(double least_scale) {
+    const std::size_t n = z_.size();
+    if (n < 12) {
+        return false;
+    }
+    weight_.assign(n, 1);
+    residual_.resize(n);
+    std::vector<double> magnitude(n);
+    for (int round = 0; round < kRounds; ++round) {
+        if (!least_squares()) {
+            return false;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            residual_[i] = z_[i] - value(u_[i], s_[i]);
+            magnitude[i] = std::abs(residual_[i]);
+        }
+        const double before = scale_;
+        scale_ = std::max(least_scale, kMadToSigma * quantile(magnitude, 0.5) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 6)));
+        if (scale_ <= 0) {
+            weight_.assign(n, 1);      // exact data: nothing to weigh down
+            return true;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            const double x = residual_[i] / (kTukey * scale_);
+            weight_[i] = std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
+        }
+        if (round > 1 && std::abs(scale_ - before) < 1e-3 * scale_) {
+            break;
+        }
+    }
+    return least_squares();
+}
+
+}  // namespace seampath

@@ -1,0 +1,268 @@
+#include "stages/geometry/section.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace seampath {
+namespace {
+
+constexpr double kGateSlope = 20 * std::numbers::pi / 180;
+constexpr double kShrink = 0.75;
+constexpr int kBins = 5;
+constexpr std::size_t kLeastPoints = 24;
+
+struct Sample {
+    float u, s, z;
+};
+
+struct Frame {
+    Eigen::Vector3d p, t, n[2], d[2];
+};
+
+std::optional<Frame> frame_of(const Section& section) {
+    Frame f;
+    f.p = section.p;
+    f.n[0] = section.n1;
+    f.n[1] = section.n2;
+    const Eigen::Vector3d axis = section.n1.cross(section.n2);
+    if (axis.norm() < 1e-3) {
+        return std::nullopt;
+    }
+    f.t = axis.normalized();
+    f.d[0] = f.t.cross(section.n1);
+    f.d[1] = section.n2.cross(f.t);
+    return f;
+}
+
+// Points of both flanks within the window. The gate is a wedge: it opens with the distance from the seam, so that a guess a
+// few degrees off still sees its flank, but never reaches the other flank.
+std::array<std::vector<Sample>, 2> gather(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& w) {
+    std::array<std::vector<Sample>, 2> samples;
+    const double opening = std::numbers::pi - std::atan2(f.n[0].cross(f.n[1]).norm(), f.n[0].dot(f.n[1]));
+    const double slope = std::tan(std::min(0.3 * opening, kGateSlope)), base = 4 * scale.noise + scale.spacing;
+    // The box of the two flank rectangles.
+    Eigen::Vector3d low = f.p, high = f.p;
+    for (int k = 0; k < 2; ++k) {
+        for (const double u : {0.0, w.away}) {
+            for (const double s : {-w.along, w.along}) {
+                for (const double z : {-1.0, 1.0}) {
+                    const Eigen::Vector3d corner = f.p + u * f.d[k] + s * f.t + z * (base + slope * u) * f.n[k];
+                    low = low.cwiseMin(corner);
+                    high = high.cwiseMax(corner);
+                }
+            }
+        }
+    }
+    grid.for_cells_in_box(low, high, [&](std::size_t cell) {
+        for (const Eigen::Vector3f& q : grid.points(cell)) {
+            const Eigen::Vector3d v = q.cast<double>() - f.p;
+            const double s = v.dot(f.t);
+            if (std::abs(s) > w.along) {
+                continue;
+            }
+            for (int k = 0; k < 2; ++k) {
+                const double u = v.dot(f.d[k]), z = v.dot(f.n[k]);
+                if (u >= w.band && u <= w.away && std::abs(z) <= base + slope * u) {
+                    samples[static_cast<std::size_t>(k)].push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z)});
+                }
+            }
+        }
+    });
+    return samples;
+}
+
+// Largest mean residual over bins across one variable, in units of what noise allows, and whether it sits at the low end.
+struct Misfit {
+    double worst = 0;
+    bool at_low_end = false;
+};
+Misfit misfit(const QuadraticFit& fit, double low, double high, bool over_u, double noise) {
+    std::array<double, kBins> sum{}, weight{};
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        const double x = ((over_u ? fit.u(i) : fit.s(i)) - low) / (high - low);
+        const auto bin = static_cast<std::size_t>(std::clamp(static_cast<int>(x * kBins), 0, kBins - 1));
+        sum[bin] += fit.weight(i) * fit.residual(i);
+        weight[bin] += fit.weight(i);
+    }
+    Misfit result;
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+        if (weight[bin] < 6) {
+            continue;
+        }
+        // Neighbouring points share their noise (about twenty to one independent value), so means are that much rougher.
+        const double allowed = std::max(0.3 * noise, 3 * noise * std::sqrt(20 / weight[bin]));
+        const double ratio = std::abs(sum[bin] / weight[bin]) / allowed;
+        if (ratio > result.worst) {
+            result = {ratio, bin == 0};
+        }
+    }
+    return result;
+}
+
+// How much larger the variance of the fit is than for independent noise: variance of sums over blocks of five spacings
+// against the number of points in them.
+double correlation_inflation(const QuadraticFit& fit, const SectionWindow& w, double spacing) {
+    const double block = 5 * spacing;
+    const int nu = static_cast<int>(w.away / block) + 1, ns = static_cast<int>(2 * w.along / block) + 1;
+    std::vector<double> sum(static_cast<std::size_t>(nu * ns), 0), squares(sum.size(), 0);
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        const int a = std::min(nu - 1, static_cast<int>(fit.u(i) * w.away / block));
+        const int b = std::min(ns - 1, static_cast<int>((fit.s(i) + 1) * w.along / block));
+        const double r = fit.weight(i) * fit.residual(i);
+        sum[static_cast<std::size_t>(a * ns + b)] += r;
+        squares[static_cast<std::size_t>(a * ns + b)] += r * r;
+    }
+    double between = 0, within = 0, blocks = 0;
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+        between += sum[k] * sum[k];
+        within += squares[k];
+        blocks += squares[k] > 0;
+    }
+    if (within <= 0 || blocks < 8) {
+        return 1;
+    }
+    return std::max(1.0, between / within * blocks / (blocks - 6));
+}
+
+std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& widest) {
+    Flank flank;
+    flank.window = widest;
+    const double noise = std::max(scale.noise, 0.02 * scale.spacing);
+    const double least_away = 6 * scale.spacing, least_along = 3 * scale.spacing;
+    while (true) {
+        SectionWindow& w = flank.window;
+        flank.fit.begin(samples.size());
+        for (const Sample& x : samples) {
+            if (x.u >= w.band && x.u <= w.away && std::abs(x.s) <= w.along) {
+                flank.fit.add(x.u / w.away, x.s / w.along, x.z);
+            }
+        }
+        if (flank.fit.size() < kLeastPoints || !flank.fit.solve(0.3 * noise)) {
+            return std::nullopt;
+        }
+        const Misfit across = misfit(flank.fit, w.band / w.away, 1, true, noise), along = misfit(flank.fit, -1, 1, false, noise);
+        const bool rough = flank.fit.scale() > 1.6 * noise;
+        const bool can_away = kShrink * w.away >= w.band + least_away, can_along = kShrink * w.along >= least_along;
+        if ((across.worst <= 1 && along.worst <= 1 && !rough) || (!can_away && !can_along)) {
+            break;
+        }
+        if (across.worst >= along.worst && across.at_low_end && w.band < 0.25 * w.away && w.band < 3 * widest.band) {
+            w.band *= 1.5;      // the corner itself reaches further than its band
+        } else if ((across.worst >= along.worst && can_away) || !can_along) {
+            w.away *= kShrink;
+        } else {
+            w.along *= kShrink;
+        }
+        if (w.away < w.band + 0.5 * least_away) {
+            break;
+        }
+    }
+    return flank;
+}
+
+void finish_flank(Flank& flank, const ScanScale& scale, double u) {
+    const SectionWindow& w = flank.window;
+    const auto& c = flank.fit.coefficients();
+    const double x = u / w.away;
+    flank.height = flank.fit.value(x, 0);
+    flank.slope = (c[1] + 2 * c[3] * x) / w.away;
+    flank.slope_along = (c[2] + c[4] * x) / w.along;
+    const auto row = QuadraticFit::row(x, 0);
+    const double variance = row.dot(flank.fit.cofactors() * row) * flank.fit.scale() * flank.fit.scale();
+    flank.sigma = std::sqrt(variance * correlation_inflation(flank.fit, w, scale.spacing));
+    const double slab = std::max(2.5 * scale.spacing, w.along / 8) / w.along;
+    double count = 0;
+    for (std::size_t i = 0; i < flank.fit.size(); ++i) {
+        count += std::abs(flank.fit.s(i)) <= slab && flank.fit.weight(i) > 0;
+    }
+    flank.slab_points = count / (2 * slab * w.along) / (w.away - w.band);
+}
+
+}  // namespace
+
+SectionWindow default_window(const ScanScale& scale) {
+    const double away = std::max(30 * scale.spacing, 25 * scale.noise);
+    return {0.7 * away, away, std::max(4 * scale.spacing, 4 * scale.noise)};
+}
+
+std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess, const SectionWindow& window) {
+    const auto frame = frame_of(guess);
+    if (!frame) {
+        return std::nullopt;
+    }
+    const Frame& f = *frame;
+    const auto samples = gather(grid, scale, f, window);
+    SectionFit result;
+    for (int k = 0; k < 2; ++k) {
+        auto flank = fit_flank(samples[static_cast<std::size_t>(k)], scale, window);
+        if (!flank) {
+            return std::nullopt;
+        }
+        result.flank[k] = std::move(*flank);
+    }
+    // Newton's method in the section plane on u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2.
+    Eigen::Vector2d u(0, 0);
+    const auto value = [&](int k) { return result.flank[k].fit.value(u[k] / result.flank[k].window.away, 0); };
+    const auto slope = [&](int k) {
+        const auto& c = result.flank[k].fit.coefficients();
+        const double away = result.flank[k].window.away;
+        return (c[1] + 2 * c[3] * u[k] / away) / away;
+    };
+    for (int iteration = 0; iteration < 20; ++iteration) {
+        const Eigen::Vector3d gap = u[0] * f.d[0] + value(0) * f.n[0] - u[1] * f.d[1] - value(1) * f.n[1];
+        const Eigen::Vector3d c0 = f.d[0] + slope(0) * f.n[0], c1 = f.d[1] + slope(1) * f.n[1];
+        Eigen::Matrix2d J;
+        J << f.d[0].dot(c0), -f.d[0].dot(c1), f.n[0].dot(c0), -f.n[0].dot(c1);
+        const Eigen::Vector2d step = -J.partialPivLu().solve(Eigen::Vector2d(f.d[0].dot(gap), f.n[0].dot(gap)));
+        if (!step.allFinite() || (u + step).cwiseAbs().maxCoeff() > window.away) {
+            return std::nullopt;
+        }
+        u += step;
+        if (step.cwiseAbs().maxCoeff() < 1e-12 * window.away) {
+            break;
+        }
+    }
+    Eigen::Vector3d normal[2];
+    for (int k = 0; k < 2; ++k) {
+        finish_flank(result.flank[k], scale, u[k]);
+        normal[k] = (f.n[k] - result.flank[k].slope * f.d[k] - result.flank[k].slope_along * f.t).normalized();
+    }
+    const Eigen::Vector3d offset = u[0] * f.d[0] + result.flank[0].height * f.n[0];
+    const Eigen::Vector3d axis = normal[0].cross(normal[1]);
+    result.section = {f.p + offset, normal[0], normal[1]};
+    result.t = axis.normalized();
+    result.bend = std::atan2(axis.norm(), normal[0].dot(normal[1]));
+    result.shift = offset.norm();
+    result.sigma = std::hypot(result.flank[0].sigma, result.flank[1].sigma) / std::max(1e-6, axis.norm());
+    if (result.t.dot(f.t) < 0.5 || !result.section.p.allFinite()) {
+        return std::nullopt;
+    }
+    return result;
+}
+
+std::optional<SectionFit> settle_section(const PointGrid& grid, const ScanScale& scale, const Section& guess, const SectionWindow& window, int rounds) {
+    auto fit = fit_section(grid, scale, guess, window);
+    const Eigen::Vector3d start = guess.p;
+    for (int round = 1; round < rounds && fit; ++round) {
+        const double before = fit->shift;
+        // Keep to the section plane of the first guess, so that the point does not wander along the seam.
+        Section next = fit->section;
+        fit = fit_section(grid, scale, next, window);
+        if (fit && fit->shift < std::max(0.1 * fit->sigma, 1e-3 * scale.noise)) {
+            break;
+        }
+        if (fit && round > 2 && fit->shift > before) {
+            break;
+        }
+    }
+    if (fit) {
+        fit->shift = (fit->section.p - start).norm();
+    }
+    return fit;
+}
+
+}  // namespace seampath

@@ -1,0 +1,110 @@
+#include "stages/place/place.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stages/error.hpp"
+
+namespace seampath {
+namespace {
+
+// Largest distance of the points strictly between i and j (indices may run past the end of a closed seam) from the chord.
+double chord_error(const std::vector<Eigen::Vector3d>& p, std::size_t i, std::size_t j) {
+    const Eigen::Vector3d &a = p[i % p.size()], &b = p[j % p.size()];
+    const double length2 = (b - a).squaredNorm();
+    double worst = 0;
+    for (std::size_t k = i + 1; k < j; ++k) {
+        const Eigen::Vector3d v = p[k % p.size()] - a;
+        const double x = length2 > 0 ? std::clamp(v.dot(b - a) / length2, 0.0, 1.0) : 0;
+        worst = std::max(worst, (v - x * (b - a)).norm());
+    }
+    return worst;
+}
+
+struct Path {
+    std::vector<std::size_t> index;      // first and last included; the last may be first + size for a closed seam
+    double cost = std::numeric_limits<double>::infinity();
+};
+
+// Fewest chords from `first` to `last`, and of those the one with the least sum of squared chord errors: a shortest path
+// by dynamic programming over the chords that hold the tolerance. Neighbours always hold it.
+Path fewest_chords(const std::vector<Eigen::Vector3d>& p, std::size_t first, std::size_t last, const PlaceOptions& o) {
+    const std::size_t n = last - first + 1;
+    const double per_chord = static_cast<double>(n) * o.chord_tolerance_mm * o.chord_tolerance_mm * 2 + 1;
+    std::vector<double> cost(n, std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> before(n, 0);
+    cost[0] = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        double length = 0;
+        for (std::size_t j = i + 1; j < n; ++j) {
+            length += (p[(first + j) % p.size()] - p[(first + j - 1) % p.size()]).norm();
+            if (j > i + 1 && length > o.max_spacing_mm) {
+                break;
+            }
+            const double error = chord_error(p, first + i, first + j);
+            if (error > 4 * o.chord_tolerance_mm) {
+                break;      // it does not come back within one spacing: the seam has turned away
+            }
+            const double total = cost[i] + per_chord + error * error;
+            if (error <= o.chord_tolerance_mm && total < cost[j]) {
+                cost[j] = total;
+                before[j] = i;
+            }
+        }
+    }
+    Path path;
+    path.cost = cost[n - 1];
+    for (std::size_t j = n - 1; j > 0; j = before[j]) {
+        path.index.push_back(first + j);
+    }
+    path.index.push_back(first);
+    std::reverse(path.index.begin(), path.index.end());
+    return path;
+}
+
+}  // namespace
+
+Fields describe(PlaceOptions& o) {
+    return {{"chord_tolerance_mm", &o.chord_tolerance_mm, "largest distance of the seam from the straight line between two nodes", above(0)},
+            {"max_spacing_mm", &o.max_spacing_mm, "largest distance between two nodes along the seam", above(0)}};
+}
+
+Nodes place(const Seam& seam, const PlaceOptions& options) {
+    const std::size_t n = seam.points.size();
+    if (n < 4) {
+        throw InputError("place: the seam has " + std::to_string(n) + " points; at least 4 are needed; lower extract.station_mm");
+    }
+    std::vector<Eigen::Vector3d> p;
+    for (const SeamPoint& point : seam.points) {
+        p.push_back(point.p);
+    }
+    Path best;
+    if (!seam.closed) {
+        best = fewest_chords(p, 0, n - 1, options);
+    } else {
+        // One node of the best ring lies within the first chord of any ring: try all places there as the start.
+        const Path any = fewest_chords(p, 0, n, options);
+        for (std::size_t start = 0; start < any.index[1]; ++start) {
+            Path ring = fewest_chords(p, start, start + n, options);
+            if (ring.cost < best.cost) {
+                best = std::move(ring);
+            }
+        }
+        best.index.pop_back();
+    }
+    Nodes nodes;
+    nodes.index = best.index;
+    const std::size_t count = nodes.index.size();
+    for (std::size_t k = 0; k + 1 < count + (seam.closed ? 1 : 0); ++k) {
+        const std::size_t to = k + 1 < count ? nodes.index[k + 1] : nodes.index[0] + n;
+        nodes.max_chord_error_mm = std::max(nodes.max_chord_error_mm, chord_error(p, nodes.index[k], to));
+    }
+    for (std::size_t& i : nodes.index) {
+        i %= n;
+    }
+    std::sort(nodes.index.begin(), nodes.index.end());
+    return nodes;
+}
+
+}  // namespace seampath

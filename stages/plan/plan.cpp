@@ -1,0 +1,142 @@
+#include "stages/plan/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "stages/error.hpp"
+#include "stages/geometry/pose.hpp"
+#include "stages/plan/air.hpp"
+#include "stages/plan/stations.hpp"
+#include "stages/plan/torch.hpp"
+
+namespace seampath {
+namespace {
+
+using namespace planning;
+
+Waypoint waypoint(const TorchPath& path, const TorchPose& pose, WaypointKind kind, double speed_mm_s) {
+    Waypoint w;
+    w.seam = path.seam();
+    w.kind = kind;
+    w.station_mm = pose.station_mm;
+    w.p = pose.p;
+    w.q = pose.q;
+    w.speed_mm_s = speed_mm_s;
+    w.sigma_mm = pose.sigma_mm;
+    return w;
+}
+
+std::vector<Waypoint> weld_waypoints(const TorchPath& path, const std::vector<TorchPose>& poses,
+                                     const PlanOptions& options) {
+    std::vector<Waypoint> weld;
+    for (const TorchPose& pose : poses) {
+        weld.push_back(waypoint(path, pose, WaypointKind::weld, options.speed_mm_s));
+    }
+    weld.front().kind = WaypointKind::weld_start;
+    weld.front().speed_mm_s = options.air_speed_mm_s;
+    weld.back().kind = WaypointKind::weld_end;
+    if (path.model().closed) {
+        weld.back().p = weld.front().p;
+        weld.back().q = weld.front().q;
+    }
+    return weld;
+}
+
+// The pose that stands `back_mm` behind w along the torch.
+Waypoint backed_off(Waypoint w, WaypointKind kind, double back_mm, double speed_mm_s) {
+    w.kind = kind;
+    w.p -= back_mm * (w.q * Eigen::Vector3d::UnitZ());
+    w.speed_mm_s = speed_mm_s;
+    return w;
+}
+
+void measure(Plan& plan, const std::vector<Waypoint>& weld) {
+    for (std::size_t k = 0; k + 1 < weld.size(); ++k) {
+        const double arc = weld[k + 1].station_mm - weld[k].station_mm;
+        const double chord = (weld[k + 1].p - weld[k].p).norm();
+        plan.max_speed_error = std::max(plan.max_speed_error, std::abs(1 - chord / arc));
+        plan.max_turn_deg =
+            std::max(plan.max_turn_deg, rotation_angle(weld[k].q, weld[k + 1].q) * 180 / std::numbers::pi);
+    }
+}
+
+// Index in the seam, quaternion sign and time, each from the waypoint before. Along the weld the way is that along the
+// curve, elsewhere the straight move; a torch that turns on the spot takes no time.
+void number_and_time(std::vector<Waypoint>& waypoints) {
+    if (waypoints.front().q.w() < 0) {
+        waypoints.front().q.coeffs() *= -1;
+    }
+    waypoints.front().index = 0;
+    waypoints.front().time_s = 0;
+    for (std::size_t k = 1; k < waypoints.size(); ++k) {
+        const Waypoint& from = waypoints[k - 1];
+        Waypoint& to = waypoints[k];
+        const bool welding = to.kind == WaypointKind::weld || to.kind == WaypointKind::weld_end;
+        const double way = welding ? to.station_mm - from.station_mm : (to.p - from.p).norm();
+        to.index = to.seam == from.seam ? from.index + 1 : 0;
+        to.q = nearest_sign(to.q, from.q);
+        to.time_s = from.time_s + way / to.speed_mm_s;
+    }
+}
+
+}  // namespace
+
+Fields describe(PlanOptions& o) {
+    return {
+        {"speed_mm_s", &o.speed_mm_s, "travel speed along the seam, mm/s", within(0.1, 1000)},
+        {"approach_mm", &o.approach_mm, "distance of the approach point before the weld, back along the torch, mm",
+         within(1, 1000)},
+        {"retract_mm", &o.retract_mm, "distance of the retract point after the weld, back along the torch, mm",
+         within(1, 1000)},
+        {"air_speed_mm_s", &o.air_speed_mm_s, "speed of all moves without arc, mm/s", within(1, 5000)},
+        {"chord_tolerance_mm", &o.chord_tolerance_mm, "largest distance of straight moves from the seam curve, mm",
+         within(0.001, 5)},
+        {"max_turn_deg", &o.max_turn_deg, "largest turn of the torch between neighbouring waypoints, deg",
+         within(0.1, 45)},
+        {"work_angle_deg", &o.work_angle_deg,
+         "turn of the torch about the direction of travel, deg; above 0 its body leans towards flank 1",
+         within(-60, 60)},
+        {"travel_angle_deg", &o.travel_angle_deg,
+         "turn of the torch about the cross direction, deg; above 0 it points ahead (push), below 0 back (drag)",
+         within(-60, 60)},
+    };
+}
+
+Plan plan(std::span<const SeamModel> models, const PlanOptions& options) {
+    ensure(options.speed_mm_s > 0 && options.air_speed_mm_s > 0 && options.approach_mm > 0 && options.retract_mm > 0 &&
+               options.chord_tolerance_mm > 0 && options.max_turn_deg > 0,
+           "plan options are within their bounds");
+    Plan result;
+    std::vector<std::vector<Waypoint>> seams;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        const TorchPath path(models[i], static_cast<int>(i), options);
+        const WeldPoses weld = weld_poses(path, options);
+        seams.push_back(weld_waypoints(path, weld.poses, options));
+        result.max_chord_error_mm = std::max(result.max_chord_error_mm, weld.max_chord_error_mm);
+        measure(result, seams.back());
+    }
+    for (const auto& weld : seams) {
+        const Waypoint approach =
+            backed_off(weld.front(), WaypointKind::approach, options.approach_mm, options.air_speed_mm_s);
+        if (!result.waypoints.empty()) {
+            const double clearance = std::min(options.approach_mm, options.retract_mm);
+            if (auto air = air_point(result.waypoints.back(), approach, seams, clearance)) {
+                result.waypoints.push_back(std::move(*air));
+            }
+        }
+        result.waypoints.push_back(approach);
+        result.waypoints.insert(result.waypoints.end(), weld.begin(), weld.end());
+        result.waypoints.push_back(
+            backed_off(weld.back(), WaypointKind::retract, options.retract_mm, options.air_speed_mm_s));
+    }
+    if (!result.waypoints.empty()) {
+        number_and_time(result.waypoints);
+        result.duration_s = result.waypoints.back().time_s;
+    }
+    return result;
+}
+
+}  // namespace seampath

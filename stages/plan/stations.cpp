@@ -1,0 +1,225 @@
+#include "stages/plan/stations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "stages/error.hpp"
+#include "stages/plan/chord.hpp"
+#include "stages/plan/text.hpp"
+
+namespace seampath::planning {
+namespace {
+
+// A move shorter than this is no progress: the torch direction jumps.
+constexpr double kMinStep_mm = 1e-6;
+
+// Halvings of the share of the limits that every move uses; found to one in a million, which on the
+// seams of the tests leaves waypoints that are the same from either end to 0.02 um.
+constexpr int kEveningBisections = 20;
+
+struct Limits {
+    double chord_mm;
+    double turn;  // rad
+};
+
+// Up to 1: the move holds its limits.
+double use(const Chord& c, const Limits& limits) {
+    return std::max(c.error_mm / limits.chord_mm, c.turn / limits.turn);
+}
+
+// One greedy pass from an end of the seam towards the other.
+class Greedy {
+public:
+    Greedy(const TorchPath& path, const Samples& samples, const Limits& limits, bool forward)
+        : path_(path), samples_(samples), limits_(limits), forward_(forward) {}
+
+    /// Stations from end to end, ascending. Where the torch direction jumps by more than the limit they stop short of
+    /// it.
+    std::vector<double> stations() const {
+        const TorchPose* from = &sample(0);
+        TorchPose reached;
+        std::vector<double> result{from->station_mm};
+        const double end = sample(count() - 1).u;
+        while (from->u != end) {
+            const TorchPose next = reach(*from);
+            if (std::abs(next.station_mm - from->station_mm) < kMinStep_mm && next.u != end) {
+                break;
+            }
+            reached = next;
+            from = &reached;
+            result.push_back(from->station_mm);
+        }
+        if (!forward_) {
+            std::reverse(result.begin(), result.end());
+        }
+        return result;
+    }
+
+private:
+    std::ptrdiff_t count() const { return std::ssize(samples_.pose); }
+    const TorchPose& sample(std::ptrdiff_t i) const { return samples_.pose[forward_ ? i : count() - 1 - i]; }
+    double use_of(const TorchPose& a, const TorchPose& b) const {
+        return use(forward_ ? chord(samples_, a, b) : chord(samples_, b, a), limits_);
+    }
+
+    // Index of the first sample beyond a.
+    std::ptrdiff_t beyond(const TorchPose& a) const {
+        const auto& pose = samples_.pose;
+        const auto before = [](const TorchPose& s, double u) { return s.u < u; };
+        const auto upto = [](double u, const TorchPose& s) { return u < s.u; };
+        return forward_ ? std::upper_bound(pose.begin(), pose.end(), a.u, upto) - pose.begin()
+                        : pose.end() - std::lower_bound(pose.begin(), pose.end(), a.u, before);
+    }
+
+    // Furthest pose that one move from a may go to: samples in growing strides, then bisected, then between two
+    // samples.
+    TorchPose reach(const TorchPose& a) const {
+        const std::ptrdiff_t first = beyond(a);
+        std::ptrdiff_t good = first - 1, bad = first;
+        for (std::ptrdiff_t stride = 1; use_of(a, sample(bad)) <= 1; stride *= 2) {
+            good = bad;
+            if (good == count() - 1) {
+                return sample(good);
+            }
+            bad = std::min(count() - 1, bad + stride);
+        }
+        while (bad - good > 1) {
+            const std::ptrdiff_t middle = good + (bad - good) / 2;
+            (use_of(a, sample(middle)) <= 1 ? good : bad) = middle;
+        }
+        return between(a, good < first ? a : sample(good), sample(bad));
+    }
+
+    // Where use() reaches 1 between a pose that holds and one that does not: false position, Illinois rule
+    // (Dowell & Jarratt, BIT 11, 1971); returns a pose that holds.
+    TorchPose between(const TorchPose& a, TorchPose good, const TorchPose& bad) const {
+        double low = good.u, high = bad.u, at_low = use_of(a, good) - 1, at_high = use_of(a, bad) - 1;
+        double slack = at_low;
+        bool last_held = false, last_failed = false;
+        for (int iteration = 0; iteration < 60 && slack < -1e-10; ++iteration) {
+            const double u = (low * at_high - high * at_low) / (at_high - at_low);
+            if (u == low || u == high) {
+                break;
+            }
+            const TorchPose pose = path_.at_parameter(u);
+            const double excess = use_of(a, pose) - 1;
+            const bool held = excess <= 0;
+            (held ? low : high) = u;
+            (held ? at_low : at_high) = excess;
+            if (held ? last_held : last_failed) {
+                (held ? at_high : at_low) *= 0.5;
+            }
+            last_held = held;
+            last_failed = !held;
+            if (held) {
+                good = pose;
+                slack = excess;
+            }
+        }
+        return good;
+    }
+
+    const TorchPath& path_;
+    const Samples& samples_;
+    Limits limits_;
+    bool forward_;
+};
+
+std::vector<TorchPose> poses_at(const TorchPath& path, const std::vector<double>& stations) {
+    std::vector<TorchPose> poses;
+    for (const double station : stations) {
+        poses.push_back(path.at_station(station));
+    }
+    return poses;
+}
+
+bool holds(const Samples& samples, const std::vector<TorchPose>& poses, const Limits& limits) {
+    for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
+        if (use(chord(samples, poses[k], poses[k + 1]), limits) > 1) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::vector<double> equal_steps(double length, std::size_t moves) {
+    std::vector<double> stations;
+    for (std::size_t k = 0; k <= moves; ++k) {
+        stations.push_back(k == moves ? length : length * static_cast<double>(k) / static_cast<double>(moves));
+    }
+    return stations;
+}
+
+struct Passes {
+    std::vector<double> forward, backward;
+
+    std::size_t moves() const { return std::min(forward.size(), backward.size()) - 1; }
+};
+
+Passes greedy(const TorchPath& path, const Samples& samples, const Limits& limits) {
+    return {Greedy(path, samples, limits, true).stations(), Greedy(path, samples, limits, false).stations()};
+}
+
+// What is left of the slack, spread over all moves; the shorter pass as it is where they differ in length.
+std::vector<double> spread(const Passes& passes) {
+    const auto& [f, b] = passes;
+    if (f.size() != b.size()) {
+        return f.size() < b.size() ? f : b;
+    }
+    std::vector<double> stations;
+    const double moves = static_cast<double>(f.size()) - 1;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        stations.push_back(f[k] - (f[k] - b[k]) * static_cast<double>(k) / moves);
+    }
+    return stations;
+}
+
+std::vector<TorchPose> choose(const TorchPath& path, const Samples& samples, const Limits& limits) {
+    const double length = path.arc().length();
+    Passes passes = greedy(path, samples, limits);
+    if (passes.forward.back() < length || passes.backward.front() > 0) {
+        const double jump = passes.forward.back() < length ? passes.forward.back() : passes.backward.front();
+        throw InputError(seam_text(path.seam()) + ": the torch direction jumps at station " + number(jump) +
+                         " mm, so no move holds plan.max_turn_deg = " + number(limits.turn * 180 / std::numbers::pi) +
+                         "; a smooth curve and smooth flanks are needed; look at the seam there");
+    }
+    const std::size_t moves = passes.moves();
+    std::vector<TorchPose> poses = poses_at(path, equal_steps(length, moves));
+    if (holds(samples, poses, limits)) {
+        return poses;
+    }
+    // Smallest share of the limits that needs no more moves: there all moves are about as good, and little slack is
+    // left.
+    double few = 1, many = 0;
+    for (int bisection = 0; bisection < kEveningBisections; ++bisection) {
+        const double share = 0.5 * (few + many);
+        Passes tighter = greedy(path, samples, {share * limits.chord_mm, share * limits.turn});
+        const bool enough = tighter.forward.size() <= moves + 1 && tighter.backward.size() <= moves + 1 &&
+                            tighter.forward.back() == length && tighter.backward.front() == 0;
+        (enough ? few : many) = share;
+        if (enough) {
+            passes = std::move(tighter);
+        }
+    }
+    poses = poses_at(path, spread(passes));
+    return holds(samples, poses, limits)
+               ? poses
+               : poses_at(path, passes.forward.size() - 1 == moves ? passes.forward : passes.backward);
+}
+
+}  // namespace
+
+WeldPoses weld_poses(const TorchPath& path, const PlanOptions& options) {
+    const Samples samples = sample(path, options.chord_tolerance_mm);
+    WeldPoses result;
+    result.poses = choose(path, samples, {options.chord_tolerance_mm, options.max_turn_deg * std::numbers::pi / 180});
+    for (std::size_t k = 0; k + 1 < result.poses.size(); ++k) {
+        result.max_chord_error_mm =
+            std::max(result.max_chord_error_mm, chord(samples, result.poses[k], result.poses[k + 1]).error_mm);
+    }
+    return result;
+}
+
+}  // namespace seampath::planning
