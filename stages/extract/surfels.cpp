@@ -36,20 +36,21 @@ void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
 
 // What hangs together with the surfel inside the ball: the other face of a thin wall does not, though it is as near.
 void collect_neighbours(Surfels& surfels, std::uint32_t i) {
-    thread_local std::vector<std::uint32_t> seen;      // the surfel for which each was last visited, plus one
-    if (seen.size() != surfels.at.size()) {
-        seen.assign(surfels.at.size(), 0);
-    }
+    thread_local std::vector<char> seen;      // all zero between calls
+    seen.resize(std::max(seen.size(), surfels.at.size()), 0);
     Surfel& s = surfels.at[i];
     s.neighbours = {i};
-    seen[i] = i + 1;
+    seen[i] = 1;
     for (std::size_t k = 0; k < s.neighbours.size(); ++k) {
         for (const std::uint32_t j : surfels.at[s.neighbours[k]].next) {
-            if (seen[j] != i + 1 && (surfels.at[j].p - s.p).squaredNorm() <= surfels.radius * surfels.radius) {
-                seen[j] = i + 1;
+            if (!seen[j] && (surfels.at[j].p - s.p).squaredNorm() <= surfels.radius * surfels.radius) {
+                seen[j] = 1;
                 s.neighbours.push_back(j);
             }
         }
+    }
+    for (const std::uint32_t j : s.neighbours) {
+        seen[j] = 0;
     }
 }
 
