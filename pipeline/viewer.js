@@ -21,7 +21,8 @@
   const hidden = new Set((/hide=([a-z,]*)/.exec(location.hash) || ['', ''])[1].split(','));
   const uniforms = { pixel: { value: 1 } };        // height of a screen pixel at unit distance from the camera
 
-  // Points as small discs lit from beside the camera; their size is that of the gaps between them.
+  // Points as small discs lit from beside the camera; so large that they close the gaps
+  // which random thinning leaves.
   function pointCloud(cloud) {
     const geometry = new THREE.BufferGeometry();
     const positions = new Uint16Array(bytes(cloud.positions).buffer);
@@ -29,7 +30,7 @@
     geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3, true));
     geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3, true));
     const material = new THREE.ShaderMaterial({
-      uniforms: { pixel: uniforms.pixel, disc: { value: 1.9 * cloud.spacing } },
+      uniforms: { pixel: uniforms.pixel, disc: { value: 2.5 * cloud.spacing } },
       vertexShader: `
         uniform float pixel, disc;
         varying float shade;
@@ -37,7 +38,7 @@
           vec4 eye = modelViewMatrix * vec4(position, 1.0);
           float slope = abs(dot((viewMatrix * vec4(normal, 0.0)).xyz, normalize(vec3(0.35, 0.55, 1.0))));
           shade = dot(normal, normal) < 0.25 ? 0.72 : 0.42 + 0.5 * slope;
-          gl_PointSize = clamp(disc / (pixel * -eye.z), 1.6, 14.0);
+          gl_PointSize = clamp(disc / (pixel * -eye.z), 1.6, 22.0);
           gl_Position = projectionMatrix * eye;
         }`,
       fragmentShader: `
