@@ -45,7 +45,6 @@ public:
           normal_(cloud.normals.empty() ? nullptr : cloud.normals.data() + first),
           record_(cloud.record.empty() ? nullptr : cloud.record.data() + first) {}
 
-    bool wants_normals() const { return normal_ != nullptr; }
     std::size_t kept() const { return kept_; }
 
     /// `normal` is read only where the cloud has normals.

@@ -10,7 +10,7 @@ namespace seampath {
 namespace {
 
 constexpr double kSampleLimit = 2e7;
-constexpr std::size_t kBlockFaces = 4096;
+constexpr std::size_t kBlockSamples = 1 << 16;
 
 bool is_usable(const Eigen::Vector3d& p) {
     return (p.array().abs() <= kCoordinateLimit).all();
@@ -46,12 +46,32 @@ std::vector<std::size_t> share_samples(const Source& source, const Mesh& mesh, d
     return first;
 }
 
+double fraction(double x) {
+    return x - static_cast<double>(static_cast<std::int64_t>(x));
+}
+
 /// Element n of R2, folded from the unit square into the triangle below its diagonal.
 Eigen::Vector2d triangle_point(std::size_t n) {
     constexpr double kPlastic = 1.32471795724474602596;  // the real root of x^3 = x + 1
-    const double u = std::fmod(0.5 + static_cast<double>(n) / kPlastic, 1.0);
-    const double v = std::fmod(0.5 + static_cast<double>(n) / (kPlastic * kPlastic), 1.0);
+    const double u = fraction(0.5 + static_cast<double>(n) / kPlastic);
+    const double v = fraction(0.5 + static_cast<double>(n) / (kPlastic * kPlastic));
     return u + v <= 1 ? Eigen::Vector2d(u, v) : Eigen::Vector2d(1 - u, 1 - v);
+}
+
+/// Adds samples begin .. end - 1, whose faces are found in `first`.
+void add_samples(const Mesh& mesh, const std::vector<std::size_t>& first, std::size_t begin, std::size_t end,
+                 Slots& slots) {
+    auto face = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), begin) - first.begin()) - 1;
+    for (std::size_t n = begin; n < end; ++face) {
+        const auto c = corners(mesh, face);
+        const Eigen::Vector3d along = c[1] - c[0];
+        const Eigen::Vector3d across = c[2] - c[0];
+        const Eigen::Vector3d normal = along.cross(across).normalized();
+        for (; n < std::min(end, first[face + 1]); ++n) {
+            const Eigen::Vector2d at = triangle_point(n);
+            slots.add(c[0] + at.x() * along + at.y() * across, normal, n);
+        }
+    }
 }
 
 Cloud vertices_as_points(const Mesh& mesh) {
@@ -107,23 +127,12 @@ Cloud sample_mesh(const Source& source, const Mesh& mesh, double spacing) {
     }
     cloud.origin = choose_origin(samples);
     std::vector<std::size_t> block_first;
-    for (std::size_t face = 0; face < mesh.faces.size(); face += kBlockFaces) {
-        block_first.push_back(first[face]);
+    for (std::size_t n = 0; n < first.back(); n += kBlockSamples) {
+        block_first.push_back(n);
     }
     block_first.push_back(first.back());
     fill_cloud(cloud, block_first, {true, false}, [&](std::size_t block, Slots& slots) {
-        const std::size_t end = std::min(mesh.faces.size(), (block + 1) * kBlockFaces);
-        for (std::size_t face = block * kBlockFaces; face < end; ++face) {
-            if (first[face] == first[face + 1]) {
-                continue;
-            }
-            const auto c = corners(mesh, face);
-            const Eigen::Vector3d normal = area_vector(c).normalized();
-            for (std::size_t n = first[face]; n < first[face + 1]; ++n) {
-                const Eigen::Vector2d at = triangle_point(n);
-                slots.add(c[0] + at.x() * (c[1] - c[0]) + at.y() * (c[2] - c[0]), normal, n);
-            }
-        }
+        add_samples(mesh, first, block_first[block], block_first[block + 1], slots);
     });
     const auto is_dropped = [&](const auto& f) {
         return std::any_of(f.begin(), f.end(), [&](std::uint32_t v) { return !is_usable(mesh.vertices[v]); });

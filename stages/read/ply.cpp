@@ -86,7 +86,7 @@ public:
     bool has_list() const { return has_list_; }
     std::size_t record_size() const { return min_record_; }
 
-    /// Goes to the end of the element; `visit(property, at)` sees each scalar property of an element with lists.
+    /// Goes to the end of the element; `visit(record, property, at)` sees each scalar of an element with lists.
     template <class Visit>
     std::size_t walk(Visit visit) {
         if (!has_list_) {
@@ -98,7 +98,7 @@ public:
                 if (property.length) {
                     step_over_list(property);
                 } else {
-                    visit(p, take(size_of(property.type)));
+                    visit(record_, p, take(size_of(property.type)));
                 }
             }
         }
@@ -137,51 +137,51 @@ private:
     std::uint64_t record_ = 0;
 };
 
-/// Where the wanted numbers of a binary vertex element are. `dense` holds them when records differ in length.
+constexpr auto kNoVisit = [](std::uint64_t, std::size_t, const char*) {};
+
+/// Where the wanted numbers of a binary vertex element are. `dense` holds them where records differ in length.
 struct VertexColumns {
     std::array<Column, 6> columns;
     std::vector<double> dense;
 };
 
+/// Copies the wanted numbers out of records that hold lists; gives the end of the element.
+std::size_t collect_vertices(Walker& walker, const Element& vertex, bool swap, VertexColumns& out) {
+    constexpr std::size_t kSlots = 6;
+    out.dense.resize(static_cast<std::size_t>(vertex.count) * kSlots);
+    for (std::size_t i = 0; i < kSlots; ++i) {
+        out.columns[i] = {reinterpret_cast<const char*>(out.dense.data() + i), kSlots * sizeof(double), Scalar::f64,
+                          false};
+    }
+    const auto slots = slots_of(vertex);
+    return walker.walk([&](std::uint64_t record, std::size_t p, const char* at) {
+        if (slots[p] >= 0) {
+            const std::size_t to = static_cast<std::size_t>(record) * kSlots + static_cast<std::size_t>(slots[p]);
+            out.dense[to] = load(at, vertex.properties[p].type, swap);
+        }
+    });
+}
+
+/// Finds the wanted numbers in the file itself, or collects them; gives the end of the element.
 std::size_t locate_vertices(const Source& source, const Element& vertex, std::size_t offset, bool swap,
                             VertexColumns& out) {
     Walker walker(source, vertex, offset, swap);
-    const auto slots = slots_of(vertex);
     if (vertex.count == 0) {
-        return walker.walk([](std::size_t, const char*) {});
+        return offset;
     }
     if (walker.has_list()) {
-        out.dense.resize(static_cast<std::size_t>(vertex.count) * 6);
-        double* record = out.dense.data();
-        const std::size_t last = vertex.properties.size() - 1;
-        const auto last_scalar = [&] {
-            std::size_t p = last;
-            while (vertex.properties[p].length) {
-                --p;
-            }
-            return p;
-        }();
-        for (std::size_t i = 0; i < 6; ++i) {
-            out.columns[i] = {reinterpret_cast<const char*>(record + i), 6 * sizeof(double), Scalar::f64, false};
-        }
-        return walker.walk([&](std::size_t p, const char* at) {
-            if (slots[p] >= 0) {
-                record[slots[p]] = load(at, vertex.properties[p].type, swap);
-            }
-            if (p == last_scalar) {
-                record += 6;
-            }
-        });
+        return collect_vertices(walker, vertex, swap, out);
     }
+    const auto slots = slots_of(vertex);
     const char* at = source.bytes.data() + offset;
     for (std::size_t p = 0; p < slots.size(); ++p) {
+        const Scalar type = vertex.properties[p].type;
         if (slots[p] >= 0) {
-            out.columns[static_cast<std::size_t>(slots[p])] = {at, walker.record_size(), vertex.properties[p].type,
-                                                               swap};
+            out.columns[static_cast<std::size_t>(slots[p])] = {at, walker.record_size(), type, swap};
         }
-        at += size_of(vertex.properties[p].type);
+        at += size_of(type);
     }
-    return walker.walk([](std::size_t, const char*) {});
+    return walker.walk(kNoVisit);
 }
 
 void decode_binary(const Source& source, const Header& header, Cloud& cloud) {
@@ -191,7 +191,7 @@ void decode_binary(const Source& source, const Header& header, Cloud& cloud) {
     for (std::size_t e = 0; e < header.elements.size(); ++e) {
         const Element& element = header.elements[e];
         offset = e == header.vertex ? locate_vertices(source, element, offset, swap, vertices)
-                                    : Walker(source, element, offset, swap).walk([](std::size_t, const char*) {});
+                                    : Walker(source, element, offset, swap).walk(kNoVisit);
     }
     if (offset != source.bytes.size()) {
         fail_at_byte(source, offset,

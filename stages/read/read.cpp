@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>

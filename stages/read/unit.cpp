@@ -13,6 +13,22 @@ std::string four_digits(double value) {
     return {text.data(), end};
 }
 
+/// What the size alone says; a factor of 0 where it says nothing.
+UnitChoice unit_by_size(ScanFormat format, double extent) {
+    constexpr double kMmFrom = 20;
+    constexpr double kMetresBelow = 2;
+    if (extent >= kMmFrom) {
+        return {1, "is 20 or more: millimetres"};
+    }
+    if (extent < kMetresBelow) {
+        return {1000, "is below 2: metres"};
+    }
+    if (format == ScanFormat::pcd) {
+        return {1000, "is between 2 and 20 in a PCD file, whose convention is metres: metres"};
+    }
+    return {0, ""};
+}
+
 }  // namespace
 
 double largest_extent(const std::vector<Eigen::Vector3f>& points) {
@@ -37,30 +53,23 @@ double largest_extent(const std::vector<Eigen::Vector3f>& points) {
 }
 
 UnitChoice choose_unit(const Source& source, Unit option, ScanFormat format, double extent) {
-    constexpr double kMmFrom = 20;
-    constexpr double kMetresBelow = 2;
-    const std::string size = "largest extent " + four_digits(extent) + " ";
-    switch (option) {
-        case Unit::mm:
-            return {1, "read.unit is mm"};
-        case Unit::m:
-            return {1000, "read.unit is m"};
-        case Unit::inch:
-            return {25.4, "read.unit is inch"};
-        case Unit::automatic:
-            break;
+    const UnitChoice by_size = unit_by_size(format, extent);
+    const std::string size = "largest extent " + four_digits(extent);
+    if (option != Unit::automatic) {
+        constexpr std::array<double, 4> kMmPerUnit{0, 1, 1000, 25.4};
+        const auto i = static_cast<std::size_t>(option);
+        UnitChoice named{kMmPerUnit[i], "read.unit is " + std::string(kUnitNames[i])};
+        if (by_size.mm_per_unit > 0 && by_size.mm_per_unit != named.mm_per_unit && option != Unit::inch) {
+            named.reason += ", though " + size + " " + by_size.reason;
+        }
+        return named;
     }
-    if (extent >= kMmFrom) {
-        return {1, size + "is 20 or more: millimetres"};
+    if (by_size.mm_per_unit == 0) {
+        fail(source,
+             size +
+                 " does not tell its unit; 20 or more is taken as mm and below 2 as m; set read.unit to mm, m or inch");
     }
-    if (extent < kMetresBelow) {
-        return {1000, size + "is below 2: metres"};
-    }
-    if (format == ScanFormat::pcd) {
-        return {1000, size + "is between 2 and 20 in a PCD file, whose convention is metres: metres"};
-    }
-    fail(source,
-         size + "does not tell its unit; 20 or more is taken as mm and below 2 as m; set read.unit to mm, m or inch");
+    return {by_size.mm_per_unit, size + " " + by_size.reason};
 }
 
 }  // namespace seampath

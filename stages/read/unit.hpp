@@ -21,7 +21,8 @@ struct UnitChoice {
 double largest_extent(const std::vector<Eigen::Vector3f>& points);
 
 /// The unit of the file: the one that the option names, or by the size of the scan: an extent of 20 or more is in mm,
-/// below 2 in metres, in between metres for a PCD. Throws InputError where that does not settle it.
+/// below 2 in metres, in between metres for a PCD. A named unit that the size speaks against is taken, and the reason
+/// says so. Throws InputError where nothing settles it.
 UnitChoice choose_unit(const Source& source, Unit option, ScanFormat format, double extent);
 
 }  // namespace seampath

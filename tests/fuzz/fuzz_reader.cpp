@@ -10,8 +10,7 @@
 /// InputError.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace seampath;
-    // Wide spacing: faces as large as the fuzzer likes should not spend its time on sampling.
-    const ReadOptions options{.unit = Unit::automatic, .mesh_spacing_mm = 1000};
+    const ReadOptions options{.unit = Unit::automatic, .mesh_spacing_mm = 5};
     try {
         const Scan scan =
             read_bytes(std::as_bytes(std::span(data, size)), ScanFormat::SEAMPATH_FUZZ_FORMAT, "fuzz", options);

@@ -166,6 +166,15 @@ TEST(ReadUnit, IsTheOneThatTheOptionNames) {
     EXPECT_EQ(inch.unit_reason, "read.unit is inch");
 }
 
+TEST(ReadUnit, ANamedUnitThatTheSizeSpeaksAgainstIsFlagged) {
+    EXPECT_EQ(read_string(row_of(0.5, 11), ScanFormat::text, {.unit = Unit::mm}).unit_reason,
+              "read.unit is mm, though largest extent 0.5 is below 2: metres");
+    EXPECT_EQ(read_string(row_of(400, 11), ScanFormat::text, {.unit = Unit::m}).unit_reason,
+              "read.unit is m, though largest extent 400 is 20 or more: millimetres");
+    EXPECT_EQ(read_string(row_of(400, 11), ScanFormat::text, {.unit = Unit::mm}).unit_reason, "read.unit is mm");
+    EXPECT_EQ(read_string(row_of(30, 11), ScanFormat::text, {.unit = Unit::inch}).unit_reason, "read.unit is inch");
+}
+
 TEST(ReadUnit, AFewStrayReturnsDoNotSpeakForThePart) {
     const std::string part = row_of(0.5, 5000);
     EXPECT_EQ(read_string(part + "900 0 0\n0 -900 0\n", ScanFormat::text, {}).mm_per_unit, 1000);

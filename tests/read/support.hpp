@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <string>
@@ -62,13 +64,10 @@ inline void expect_invariants(const Scan& scan) {
     EXPECT_TRUE(scan.origin_mm.allFinite());
     EXPECT_GT(scan.mm_per_unit, 0);
     EXPECT_LE(scan.dropped_not_finite, scan.points_in_file);
-    for (const auto& p : scan.points) {
-        ASSERT_TRUE(p.allFinite());
-    }
+    EXPECT_TRUE(std::all_of(scan.points.begin(), scan.points.end(), [](const auto& p) { return p.allFinite(); }));
     EXPECT_TRUE(scan.normals.empty() || scan.normals.size() == scan.points.size());
-    for (const auto& n : scan.normals) {
-        ASSERT_NEAR(n.norm(), 1, 1e-5);
-    }
+    EXPECT_TRUE(std::all_of(scan.normals.begin(), scan.normals.end(),
+                            [](const auto& n) { return std::abs(n.norm() - 1) < 1e-5F; }));
     const std::uint64_t raster = std::uint64_t{scan.width} * scan.height;
     EXPECT_EQ(scan.pixel.size(), raster > 0 ? scan.points.size() : 0);
     for (std::size_t i = 0; i < scan.pixel.size(); ++i) {
