@@ -1,10 +1,13 @@
 #include "datasets/dataset.hpp"
 
 #include <cmath>
+#include <limits>
+#include <string>
 #include <thread>
 
 #include "datasets/portable_math.hpp"
 #include "datasets/rng.hpp"
+#include "stages/error.hpp"
 
 namespace seampath {
 namespace {
@@ -28,17 +31,32 @@ Eigen::Isometry3d draw_pose(const SceneOptions& scene, std::uint64_t seed) {
 }  // namespace
 
 Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, std::uint64_t seed, unsigned threads) {
-    Dataset dataset{resolved(scene, seed), scanner, seed, draw_pose(scene, seed), {}, {}};
+    if (scanner.organised && scanner.views != 1) {
+        throw InputError("dataset: an organised scan of " + std::to_string(scanner.views) +
+                         " views was asked for; an organised scan has one raster, so set views to 1");
+    }
+    Dataset dataset;
+    dataset.scene = resolved(scene, seed);
+    dataset.scanner = scanner;
+    dataset.seed = seed;
+    dataset.scan_from_scene = draw_pose(scene, seed);
     const Scene made = make_scene(dataset.scene);
     dataset.truth = transformed(made.truth, dataset.scan_from_scene);
     if (threads == 0) {
         threads = std::max(1U, std::thread::hardware_concurrency());
     }
     for (int i = 0; i < scanner.views; ++i) {
-        for (const Eigen::Vector3d& p : take_view(made, scanner, seed, i, threads).points) {
+        const View view = take_view(made, scanner, seed, i, threads);
+        for (const Eigen::Vector3d& p : view.points) {
             if (!std::isnan(p.x())) {
                 dataset.points.push_back((dataset.scan_from_scene * p).cast<float>());
+            } else if (scanner.organised) {
+                dataset.points.push_back(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
             }
+        }
+        if (scanner.organised) {
+            dataset.width = view.width;
+            dataset.height = view.height;
         }
     }
     return dataset;

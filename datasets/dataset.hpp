@@ -17,13 +17,16 @@ struct Dataset {
     SceneOptions scene;  ///< as made: every dimension set
     ScannerOptions scanner;
     std::uint64_t seed = 0;
-    Eigen::Isometry3d scan_from_scene;    ///< pose of the part
-    std::vector<Eigen::Vector3f> points;  ///< all views in one, mm, scan frame
-    Truth truth;                          ///< scan frame
+    Eigen::Isometry3d scan_from_scene = Eigen::Isometry3d::Identity();  ///< pose of the part
+    std::vector<Eigen::Vector3f> points;                                ///< all views in one, mm, scan frame
+    std::uint32_t width = 0;  ///< raster of an organised scan, whose gaps are NaN; otherwise 0
+    std::uint32_t height = 0;
+    Truth truth;  ///< scan frame
 };
 
 /// A scan of a scene and its truth, all from one seed: the same bytes on any machine and any number of threads
-/// (0: as many as the machine has). Throws InputError for a part that can't be built.
+/// (0: as many as the machine has). Options lie within the bounds of describe(). Throws InputError for a part that
+/// can't be built or seen.
 Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, std::uint64_t seed,
                      unsigned threads = 0);
 

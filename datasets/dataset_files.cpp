@@ -1,5 +1,8 @@
+#include <array>
+#include <bit>
 #include <fstream>
 #include <span>
+#include <string_view>
 #include <type_traits>
 
 #include <nlohmann/json.hpp>
@@ -103,17 +106,28 @@ std::vector<TruthPoint> read_points(const ordered_json& seam) {
     return points;
 }
 
+std::string ply_header(const Dataset& dataset) {
+    return "ply\nformat binary_little_endian 1.0\ncomment lengths in mm\nelement vertex " +
+           std::to_string(dataset.points.size()) +
+           "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+}
+
+std::string pcd_header(const Dataset& dataset) {
+    return "# .PCD v0.7 - lengths in mm\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+           std::to_string(dataset.width) + "\nHEIGHT " + std::to_string(dataset.height) +
+           "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(dataset.points.size()) + "\nDATA binary\n";
+}
+
 }  // namespace
 
 void write_dataset(const Dataset& dataset, const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     static_assert(sizeof(Eigen::Vector3f) == 12 && std::endian::native == std::endian::little);
-    const std::string header = "ply\nformat binary_little_endian 1.0\ncomment lengths in mm\nelement vertex " +
-                               std::to_string(dataset.points.size()) +
-                               "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    const bool organised = dataset.width > 0;
+    const std::string header = organised ? pcd_header(dataset) : ply_header(dataset);
     const std::string_view body(reinterpret_cast<const char*>(dataset.points.data()), dataset.points.size() * 12);
-    write_file(folder / "scan.ply", std::array<std::string_view, 2>{header, body});
+    write_file(folder / (organised ? "scan.pcd" : "scan.ply"), std::array<std::string_view, 2>{header, body});
     write_file(folder / "truth.json", std::array<std::string_view, 1>{to_json(dataset).dump() + "\n"});
 }
 

@@ -1,13 +1,12 @@
 #include "datasets/scanner.hpp"
 
-#include <atomic>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <thread>
 
 #include "datasets/portable_math.hpp"
 #include "datasets/rng.hpp"
+#include "datasets/rows.hpp"
+#include "datasets/sensor_errors.hpp"
 #include "datasets/station.hpp"
 
 namespace seampath {
@@ -26,27 +25,12 @@ constexpr double kWidestCosine = 0.2;  // noise grows with 1/cos(incidence) up t
 constexpr double kSmallestStep = 0.5;  // mm; smaller depth steps mix no pixels
 constexpr double kGhostReach = 10;     // mm from the joint
 constexpr double kGhostSigma = 0.3;    // mm
-constexpr double kMostDropout = 0.95;  // share of missing pixels at grazing incidence
-
-/// Runs body(row) for each row. Rows must not depend on each other.
-void for_rows(std::uint32_t rows, unsigned threads, const std::function<void(std::uint32_t)>& body) {
-    std::atomic<std::uint32_t> next{0};
-    const auto work = [&] {
-        for (std::uint32_t row = next++; row < rows; row = next++) {
-            body(row);
-        }
-    };
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < threads; ++i) {
-        others.emplace_back(work);
-    }
-    work();
-}
 
 /// What one pixel truly sees.
 struct Sight {
     double depth = kNone;  ///< along the sensor's z, mm
     double cosine = 0;     ///< of the angle of incidence
+    Eigen::Vector3f normal{0, 0, 0};
 };
 
 /// The first surface on the pixel's ray, unless the second eye does not see it.
@@ -67,100 +51,7 @@ Sight look(const Scene& scene, const Station& station, std::uint32_t column, std
     if (n.dot(to_point) >= 0 || first_hit(scene.surfaces, {second_eye, to_point / distance}, distance - kOwnShade)) {
         return {};
     }
-    return {hit->t / stretch, -n.dot(ray.direction)};
-}
-
-std::vector<double> gaussian_kernel(double sigma) {
-    const int reach = static_cast<int>(std::ceil(3 * sigma));
-    std::vector<double> kernel;
-    double power = 0;
-    for (int i = -reach; i <= reach; ++i) {
-        kernel.push_back(sigma > 0 ? portable::exp(-i * i / (2 * sigma * sigma)) : 1);
-        power += kernel.back() * kernel.back();
-    }
-    for (double& weight : kernel) {
-        weight /= std::sqrt(power);  // independent values of variance 1 keep variance 1
-    }
-    return kernel;
-}
-
-/// Noise of variance 1 for each pixel, white or tied to its neighbours: along the row and, for a picture that is taken
-/// at once, down the column.
-std::vector<double> noise_field(const ScannerOptions& o, const Station& station, const Random& random,
-                                unsigned threads) {
-    const std::vector<double> across = gaussian_kernel(o.correlation_px);
-    const std::vector<double> down = gaussian_kernel(o.sensor == SensorKind::camera ? o.correlation_px : 0);
-    const std::size_t width = station.width;
-    const std::size_t white_width = width + across.size() - 1;
-    const auto rows = static_cast<std::uint32_t>(station.height + down.size() - 1);
-    std::vector<double> blurred(rows * width);
-    for_rows(rows, threads, [&](std::uint32_t row) {
-        std::vector<double> white(white_width);
-        for (std::size_t i = 0; i < white_width; ++i) {
-            white[i] = random.normal(row * white_width + i);
-        }
-        for (std::size_t column = 0; column < width; ++column) {
-            double sum = 0;
-            for (std::size_t k = 0; k < across.size(); ++k) {
-                sum += across[k] * white[column + k];
-            }
-            blurred[row * width + column] = sum;
-        }
-    });
-    std::vector<double> field(station.height * width);
-    for_rows(station.height, threads, [&](std::uint32_t row) {
-        for (std::size_t k = 0; k < down.size(); ++k) {
-            for (std::size_t column = 0; column < width; ++column) {
-                field[row * width + column] += down[k] * blurred[(row + k) * width + column];
-            }
-        }
-    });
-    return field;
-}
-
-/// Pixels lost in round spots whose diameters are 1 to 5 mm.
-std::vector<char> blob_mask(const ScannerOptions& o, const Station& station, const Random& random) {
-    const double kMeanArea = portable::kPi * (2.5 * 2.5 * 2.5 - 0.5 * 0.5 * 0.5) / (3 * (2.5 - 0.5));  // mm^2
-    const double area = station.width * o.pitch_x_mm * station.height * o.pitch_y_mm;
-    const auto spots = static_cast<std::uint64_t>(o.blobs * area / kMeanArea);
-    std::vector<char> mask(std::size_t{station.width} * station.height);
-    for (std::uint64_t i = 0; i < spots; ++i) {
-        const double column = random.uniform(3 * i, 0, station.width);
-        const double row = random.uniform(3 * i + 1, 0, station.height);
-        const double radius = random.uniform(3 * i + 2, 0.5, 2.5);
-        const double reach_x = radius / o.pitch_x_mm;
-        const double reach_y = radius / o.pitch_y_mm;
-        for (double r = std::max(0.0, std::ceil(row - reach_y)); r <= std::min(station.height - 1.0, row + reach_y);
-             ++r) {
-            for (double c = std::max(0.0, std::ceil(column - reach_x));
-                 c <= std::min(station.width - 1.0, column + reach_x); ++c) {
-                const double dx = (c - column) / reach_x;
-                const double dy = (r - row) / reach_y;
-                if (dx * dx + dy * dy <= 1) {
-                    mask[static_cast<std::size_t>(r) * station.width + static_cast<std::size_t>(c)] = 1;
-                }
-            }
-        }
-    }
-    return mask;
-}
-
-/// p0 face on, growing between 60 and 80 degrees of incidence.
-double dropout_share(double p0, double cosine) {
-    const double t = std::clamp((portable::acos(cosine) - radians(60)) / radians(20), 0.0, 1.0);
-    return p0 + std::max(0.0, kMostDropout - p0) * t * t * (3 - 2 * t);
-}
-
-/// Error of the robot's path at a row: three waves per axis, each of a third of the amplitude, 20 to 300 mm long.
-Vector3d path_error(const ScannerOptions& o, const Random& random, std::uint32_t row) {
-    Vector3d error = Vector3d::Zero();
-    for (std::uint64_t i = 0; i < 9 && o.path_error_mm > 0; ++i) {
-        const double wavelength = random.uniform(2 * i, 20, 300);
-        const double phase = random.uniform(2 * i + 1, 0, 2 * portable::kPi);
-        error[static_cast<int>(i % 3)] +=
-            o.path_error_mm / 3 * portable::sin(phase + 2 * portable::kPi * row * o.pitch_y_mm / wavelength);
-    }
-    return error;
+    return {hit->t / stretch, -n.dot(ray.direction), n.cast<float>()};
 }
 
 const TruthPoint& nearest_truth(const Truth& truth, const Vector3d& p) {
@@ -264,25 +155,52 @@ private:
         return depth;
     }
 
-    /// At a depth step a pixel's light may come from both sides of it.
+    /// At a depth step a pixel's light may come from both sides of it: of its neighbours across a step, the one that
+    /// differs most takes part.
     double mixed_depth(std::uint32_t column, std::uint32_t row, std::size_t pixel) const {
         const double depth = sights_[pixel].depth;
         const Random mixed = random(kMixed);
         if (mixed.uniform(2 * pixel) >= o_.mixed_pixels) {
             return depth;
         }
-        const double smallest = std::max(kSmallestStep, 5 * sigma(sights_[pixel]));
         double other = depth;
-        const auto look_at = [&](bool exists, std::size_t neighbour) {
-            if (exists && std::abs(sights_[neighbour].depth - depth) > std::max(smallest, std::abs(other - depth))) {
-                other = sights_[neighbour].depth;
+        const auto look_at = [&](int right, int down) {
+            const std::uint32_t c = column + static_cast<std::uint32_t>(right);
+            const std::uint32_t r = row + static_cast<std::uint32_t>(down);
+            if (c >= station_.width || r >= station_.height) {
+                return;  // beyond the border; -1 has become the largest number
+            }
+            const double there = sights_[std::size_t{r} * station_.width + c].depth;
+            if (std::abs(there - depth) > std::abs(other - depth) && is_step(column, row, c, r)) {
+                other = there;
             }
         };
-        look_at(column > 0, pixel - 1);
-        look_at(column + 1 < station_.width, pixel + 1);
-        look_at(row > 0, pixel - station_.width);
-        look_at(row + 1 < station_.height, pixel + station_.width);
+        look_at(-1, 0);
+        look_at(1, 0);
+        look_at(0, -1);
+        look_at(0, 1);
         return depth + mixed.uniform(2 * pixel + 1) * (other - depth);
+    }
+
+    /// Neither pixel lies where the other's tangent plane would put it: not one slanted surface, nor a crease.
+    bool is_step(std::uint32_t column, std::uint32_t row, std::uint32_t other_column, std::uint32_t other_row) const {
+        const double smallest = std::max(kSmallestStep, 5 * sigma(sight_at(column, row)));
+        return off_plane(column, row, other_column, other_row) > smallest &&
+               off_plane(other_column, other_row, column, row) > smallest;
+    }
+
+    /// How far, in depth, the second pixel's point is from the tangent plane of the first's.
+    double off_plane(std::uint32_t column, std::uint32_t row, std::uint32_t other_column,
+                     std::uint32_t other_row) const {
+        const Sight& sight = sight_at(column, row);
+        const Vector3d n = sight.normal.cast<double>();
+        const Vector3d p = station_.eye(row) + sight.depth * station_.sight(column, row);
+        const double depth = n.dot(p - station_.eye(other_row)) / n.dot(station_.sight(other_column, other_row));
+        return std::abs(sight_at(other_column, other_row).depth - depth);
+    }
+
+    const Sight& sight_at(std::uint32_t column, std::uint32_t row) const {
+        return sights_[std::size_t{row} * station_.width + column];
     }
 
     Vector3d seen_point(const Vector3d& p, std::size_t pixel) const {

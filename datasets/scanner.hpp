@@ -22,10 +22,11 @@ inline constexpr std::array<std::string_view, 2> kSensorNames{"camera", "profile
 struct ScannerOptions {
     SensorKind sensor = SensorKind::camera;
     double sigma_mm = 0.045;   ///< along the ray, face on, at the working distance
-    double pitch_x_mm = 0.34;  ///< of pixels on a face-on surface at the working distance; all views together are
-    double pitch_y_mm = 0.34;  ///< denser: about 0.2 mm on what all of them see, 0.3 mm on what two see
+    double pitch_x_mm = 0.32;  ///< of pixels on a face-on surface at the working distance; all views together are
+    double pitch_y_mm = 0.32;  ///< denser: about 0.2 mm on what all of them see, 0.3 mm on what two see
     double working_distance_mm = 600;
     int views = 6;
+    bool organised = false;           ///< keep the raster, with gaps; for one view
     double elevation_deg = 37;        ///< of the views over the plate, give or take 4
     double triangulation_deg = 25;    ///< between camera and projector or laser, seen from the part
     double correlation_px = 1.2;      ///< 1-sigma width of the kernel that ties neighbouring errors; 0: white

@@ -8,22 +8,24 @@
 namespace seampath {
 namespace {
 
+using Eigen::Vector3d;
+
 constexpr double kEdgeSlack = 1e-9;  // mm by which neighbouring faces overlap, so that no ray slips between them
 
-double value(const Plane& plane, const Eigen::Vector3d& p) {
+double value(const Plane& plane, const Vector3d& p) {
     return plane.n.dot(p - plane.p);
 }
 
-double value(const Cylinder& cylinder, const Eigen::Vector3d& p) {
-    const Eigen::Vector3d d = p - cylinder.p;
+double value(const Cylinder& cylinder, const Vector3d& p) {
+    const Vector3d d = p - cylinder.p;
     return (d - d.dot(cylinder.axis) * cylinder.axis).norm() - cylinder.radius;
 }
 
-double value(const SineWall& wall, const Eigen::Vector3d& p) {
+double value(const SineWall& wall, const Vector3d& p) {
     return wall.side * (p.y() - wall.offset - wall.amplitude * portable::sin(wall.wave_number * p.x()));
 }
 
-bool is_inside(const Surface& surface, const Eigen::Vector3d& p) {
+bool is_inside(const Surface& surface, const Vector3d& p) {
     return std::all_of(surface.inside_of.begin(), surface.inside_of.end(),
                        [&](const Shape& shape) { return signed_value(shape, p) <= kEdgeSlack; });
 }
@@ -32,7 +34,6 @@ bool is_inside(const Surface& surface, const Eigen::Vector3d& p) {
 class Nearest {
 public:
     Nearest(const Ray& ray, double limit) : ray_(ray), t_(limit) {}
-    bool reaches(double t) const { return t < t_; }
     double limit() const { return t_; }
     bool offer(const Surface& surface, double t) {
         if (!(t > 0) || !(t < t_) || !is_inside(surface, ray_.origin + t * ray_.direction)) {
@@ -53,9 +54,9 @@ bool cross(const Plane& plane, const Surface& surface, const Ray& ray, Nearest& 
 }
 
 bool cross(const Cylinder& cylinder, const Surface& surface, const Ray& ray, Nearest& nearest) {
-    const Eigen::Vector3d from_axis = ray.origin - cylinder.p;
-    const Eigen::Vector3d o = from_axis - from_axis.dot(cylinder.axis) * cylinder.axis;
-    const Eigen::Vector3d d = ray.direction - ray.direction.dot(cylinder.axis) * cylinder.axis;
+    const Vector3d from_axis = ray.origin - cylinder.p;
+    const Vector3d o = from_axis - from_axis.dot(cylinder.axis) * cylinder.axis;
+    const Vector3d d = ray.direction - ray.direction.dot(cylinder.axis) * cylinder.axis;
     const double a = d.squaredNorm();
     if (a == 0) {
         return false;
@@ -106,57 +107,69 @@ double root(const WallProfile& profile, double low, double high) {
     return t;
 }
 
-/// The turning points of g cut the ray into pieces on which g is monotone, each with at most one crossing.
-bool cross(const SineWall& wall, const Surface& surface, const Ray& ray, Nearest& nearest) {
-    const WallProfile profile{wall, ray};
-    double begin = 0;
-    double end = nearest.limit();
-    const double reach = std::abs(wall.amplitude);
-    if (std::abs(ray.direction.y()) < 1e-12) {
-        if (std::abs(ray.origin.y() - wall.offset) > reach) {
-            return false;
-        }
-    } else {
-        const double t1 = (wall.offset - reach - ray.origin.y()) / ray.direction.y();
-        const double t2 = (wall.offset + reach - ray.origin.y()) / ray.direction.y();
-        begin = std::max(begin, std::min(t1, t2) - kEdgeSlack);
-        end = std::min(end, std::max(t1, t2) + kEdgeSlack);
-    }
-    for (const Shape& shape : surface.inside_of) {
-        const Plane* plane = std::get_if<Plane>(&shape);
-        if (!plane) {
-            continue;
-        }
-        const double slope = plane->n.dot(ray.direction);
-        const double t = plane->n.dot(plane->p - ray.origin) / slope;
+/// Piece of the ray, as lengths along it.
+struct Piece {
+    double begin;
+    double end;
+
+    /// Keeps what lies before the plane, plus a little so that a crossing on the plane itself is not lost.
+    void keep_behind(const Plane& plane, const Ray& ray) {
+        const double kSlack = 1e-6;  // mm
+        const double slope = plane.n.dot(ray.direction);
+        const double t = plane.n.dot(plane.p - ray.origin) / slope;
         if (slope > 0) {
-            end = std::min(end, t + 1e-6);
+            end = std::min(end, t + kSlack);
         } else if (slope < 0) {
-            begin = std::max(begin, t - 1e-6);
+            begin = std::max(begin, t - kSlack);
+        } else if (value(plane, ray.origin) > kEdgeSlack) {
+            end = begin;
         }
     }
-    if (!(begin < end)) {
-        return false;
-    }
-    std::vector<double> cut{begin, end};
+};
+
+/// Ends of the pieces of the ray on which g is monotone: its turning points, where cos(wave_number x) = ratio.
+std::vector<double> monotone_pieces(const SineWall& wall, const Ray& ray, const Piece& piece) {
+    std::vector<double> ends{piece.begin, piece.end};
     const double phase_rate = wall.wave_number * ray.direction.x();
     const double ratio = ray.direction.y() / (wall.amplitude * phase_rate);
-    if (phase_rate != 0 && std::abs(ratio) < 1) {
-        const double angle = portable::acos(ratio);
-        const double phase = wall.wave_number * ray.origin.x();
-        const double first = std::min(phase + begin * phase_rate, phase + end * phase_rate);
-        const double last = std::max(phase + begin * phase_rate, phase + end * phase_rate);
-        for (const double start : {angle, -angle}) {
-            const double turn = 2 * portable::kPi;
-            for (double at = start + std::ceil((first - start) / turn) * turn; at < last; at += turn) {
-                cut.push_back((at - phase) / phase_rate);
-            }
-        }
-        std::sort(cut.begin(), cut.end());
+    if (!(std::abs(ratio) < 1)) {
+        return ends;
     }
-    for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
-        if ((profile.g(cut[i]) < 0) != (profile.g(cut[i + 1]) < 0) &&
-            nearest.offer(surface, root(profile, cut[i], cut[i + 1]))) {
+    const double angle = portable::acos(ratio);
+    const double phase = wall.wave_number * ray.origin.x();
+    const double phase_begin = phase + piece.begin * phase_rate;
+    const double phase_end = phase + piece.end * phase_rate;
+    const double turn = 2 * portable::kPi;
+    for (const double start : {angle, -angle}) {
+        const double turns = std::ceil((std::min(phase_begin, phase_end) - start) / turn);
+        for (double at = start + turns * turn; at < std::max(phase_begin, phase_end); at += turn) {
+            ends.push_back((at - phase) / phase_rate);
+        }
+    }
+    std::sort(ends.begin(), ends.end());
+    return ends;
+}
+
+/// Each monotone piece holds at most one crossing.
+bool cross(const SineWall& wall, const Surface& surface, const Ray& ray, Nearest& nearest) {
+    Piece piece{0, nearest.limit()};
+    const Vector3d reach(0, std::abs(wall.amplitude), 0);
+    const Vector3d middle(0, wall.offset, 0);
+    piece.keep_behind({middle + reach, Vector3d::UnitY()}, ray);
+    piece.keep_behind({middle - reach, -Vector3d::UnitY()}, ray);
+    for (const Shape& shape : surface.inside_of) {
+        if (const Plane* plane = std::get_if<Plane>(&shape)) {
+            piece.keep_behind(*plane, ray);
+        }
+    }
+    if (!(piece.begin < piece.end)) {
+        return false;
+    }
+    const WallProfile profile{wall, ray};
+    const std::vector<double> ends = monotone_pieces(wall, ray, piece);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        if ((profile.g(ends[i]) < 0) != (profile.g(ends[i + 1]) < 0) &&
+            nearest.offer(surface, root(profile, ends[i], ends[i + 1]))) {
             return true;
         }
     }

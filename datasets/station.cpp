@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "datasets/portable_math.hpp"
+#include "stages/error.hpp"
 
 namespace seampath {
 namespace {
@@ -14,6 +15,7 @@ using portable::radians;
 constexpr double kAzimuthJitter = 8;    // deg; an operator does not measure where he puts the sensor
 constexpr double kElevationJitter = 4;  // deg
 constexpr double kBorder = 2;           // pixels around the part
+constexpr double kMostPixels = 1e8;     // of one view; each takes about 60 bytes in the making
 
 /// Direction from the part to the sensor.
 Vector3d draw_direction(const Scene& scene, const ScannerOptions& o, const Random& placing, int index) {
@@ -40,6 +42,14 @@ void frame_part(Station& station, const Eigen::AlignedBox3d& box, bool moves, do
         station.nearest = std::min(station.nearest, p.z());
         station.farthest = std::max(station.farthest, p.z());
     }
+    if (!(station.nearest > 0)) {
+        throw InputError("dataset: the part reaches the sensor; make working_distance_mm larger than the part");
+    }
+    const Eigen::Vector2d size = picture.sizes();
+    if (!(size.x() * size.y() < kMostPixels)) {
+        throw InputError(
+            "dataset: a view would have more than 100 million pixels; make pitch_x_mm and pitch_y_mm larger");
+    }
     station.centre_x = std::ceil(kBorder - picture.min().x());
     station.centre_y = std::ceil(kBorder - picture.min().y());
     station.width = static_cast<std::uint32_t>(std::ceil(picture.max().x() + station.centre_x + kBorder));
@@ -58,7 +68,7 @@ Station make_station(const Scene& scene, const ScannerOptions& o, const Random& 
     station.scene_from_sensor.linear() << x, y, z;
     station.scene_from_sensor.translation() = target - o.working_distance_mm * z;
     const auto [s, c] = portable::sincos(radians(o.triangulation_deg));
-    station.other_eye = target + o.working_distance_mm * (s * (moves ? y : x) - c * z);
+    station.other_eye = target + o.working_distance_mm * (s * (moves ? -y : x) - c * z);
     station.focal_x = o.working_distance_mm / o.pitch_x_mm;
     station.focal_y = moves ? std::numeric_limits<double>::infinity() : o.working_distance_mm / o.pitch_y_mm;
     frame_part(station, scene.box, moves, o.pitch_y_mm);

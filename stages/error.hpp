@@ -1,6 +1,5 @@
 #pragma once
 
-#include <source_location>
 #include <stdexcept>
 #include <string>
 
@@ -25,10 +24,11 @@ public:
     using std::logic_error::logic_error;
 };
 
-/// Assertion that stays on in every build; throws InternalError naming file and line.
-inline void ensure(bool holds, const char* what, std::source_location where = std::source_location::current()) {
+/// Assertion that stays on in every build; throws InternalError naming file and line. Builtins, because clang 14, which
+/// builds the fuzzers, has no std::source_location.
+inline void ensure(bool holds, const char* what, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
     if (!holds) {
-        throw InternalError(std::string(where.file_name()) + ":" + std::to_string(where.line()) + ": " + what);
+        throw InternalError(std::string(file) + ":" + std::to_string(line) + ": " + what);
     }
 }
 

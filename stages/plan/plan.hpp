@@ -20,7 +20,10 @@ struct PlanOptions {
 Fields describe(PlanOptions&);
 
 /// Torch poses along all models in the given order: +Z into the joint on the bisector of the flanks, +X along travel,
-/// constant tool speed by inversion of the arc length, approach before and retract after each seam.
+/// constant tool speed by inversion of the arc length, approach before and retract after each seam, and a point in the
+/// air between two seams where the straight way would come near one. A closed seam ends in its first pose. Times are
+/// those of the commanded speeds; turning on the spot takes none. Throws InputError naming seam and station where the
+/// flanks have no bisector or the torch direction jumps, and for a seam shorter than ten chord tolerances.
 Plan plan(std::span<const SeamModel> models, const PlanOptions& options);
 
 }  // namespace seampath

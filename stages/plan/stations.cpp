@@ -15,8 +15,8 @@ namespace {
 // A move shorter than this is no progress: the torch direction jumps.
 constexpr double kMinStep_mm = 1e-6;
 
-// Halvings of the share of the limits that every move uses; found to one in a million, which on the
-// seams of the tests leaves waypoints that are the same from either end to 0.02 um.
+// Halvings of the share of the limits that every move uses; found to one in a million, waypoints are the same from
+// either end to 0.1 um on the seams of the tests.
 constexpr int kEveningBisections = 20;
 
 struct Limits {

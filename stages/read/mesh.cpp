@@ -57,6 +57,9 @@ Eigen::Vector2d triangle_point(std::size_t n) {
 Cloud vertices_as_points(const Mesh& mesh) {
     Cloud cloud;
     cloud.format = mesh.format + " (vertices)";
+    if (mesh.vertices.empty()) {
+        return cloud;
+    }
     const auto columns = [](const std::vector<Eigen::Vector3d>& values) {
         const char* first = reinterpret_cast<const char*>(values.data());
         constexpr std::size_t kNext = sizeof(double);

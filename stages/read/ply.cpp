@@ -147,6 +147,9 @@ std::size_t locate_vertices(const Source& source, const Element& vertex, std::si
                             VertexColumns& out) {
     Walker walker(source, vertex, offset, swap);
     const auto slots = slots_of(vertex);
+    if (vertex.count == 0) {
+        return walker.walk([](std::size_t, const char*) {});
+    }
     if (walker.has_list()) {
         out.dense.resize(static_cast<std::size_t>(vertex.count) * 6);
         double* record = out.dense.data();

@@ -1,11 +1,11 @@
 #include "stages/export/export.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <random>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -18,7 +18,9 @@
 #include "stages/export/format.hpp"
 #include "stages/export/text.hpp"
 #include "stages/geometry/pose.hpp"
+#include "stages/plan/plan.hpp"
 #include "tests/export/plans.hpp"
+#include "tests/plan/models.hpp"
 
 namespace seampath {
 namespace {
@@ -60,10 +62,15 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
 }
 
 std::vector<double> numbers_in(const std::string& text) {
-    static const std::regex number("-?[0-9]+(\\.[0-9]+)?(E[0-9]+)?");
     std::vector<double> result;
-    for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
-        result.push_back(std::stod(it->str()));
+    const char* const end = text.data() + text.size();
+    for (const char* at = text.data(); at != end;) {
+        double value = 0;
+        const auto [behind, error] = std::from_chars(at, end, value);
+        if (error == std::errc() && std::isfinite(value)) {
+            result.push_back(value);
+        }
+        at = error == std::errc() ? behind : at + 1;
     }
     return result;
 }
@@ -173,6 +180,17 @@ TEST(Export, ThreeHundredRandomPlansComeBack) {
                 EXPECT_EQ(file.position_rounding_mm, exact ? 0 : 0.0005);
             }
         }
+    }
+}
+
+TEST(Export, PlannedSeamsComeBack) {
+    const std::vector<SeamModel> models{test::model_of(test::circle(40), true, 64),
+                                        test::model_of(test::s_curve(200, 12), false, 120)};
+    const Plan planned = plan(models, {});
+    for (const ProgramFile& file : export_programs(planned, arc_options())) {
+        EXPECT_LE(file.max_position_error_mm, 0.0009) << file.robot;
+        EXPECT_LE(file.max_orientation_error_deg, 1e-4) << file.robot;
+        EXPECT_LE(file.max_speed_error, 1e-9) << file.robot << ": 8 and 100 mm/s have few digits";
     }
 }
 

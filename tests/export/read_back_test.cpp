@@ -107,14 +107,13 @@ TEST_P(ReadBack, NoticesATruncatedFile) {
 // Any byte made another: the file is refused, or says the same as before.
 TEST_P(ReadBack, SurvivesAnyDamagedByte) {
     const std::string whole = text();
+    const std::string others = "x(-\n\"[;9";
     for (std::size_t at = 0; at < whole.size(); ++at) {
-        for (const char c : {'x', '(', '-', '\n', '"'}) {
-            std::string damaged = whole;
-            damaged[at] = c;
-            try {
-                read_and_compare(damaged);
-            } catch (const InternalError&) {
-            }
+        std::string damaged = whole;
+        damaged[at] = others[at % others.size()];
+        try {
+            read_and_compare(damaged);
+        } catch (const InternalError&) {
         }
     }
 }

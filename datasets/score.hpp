@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "datasets/scenes.hpp"
+#include "stages/types.hpp"
+
+namespace seampath {
+
+/// A reported curve and a true seam correspond where they are no further apart than this.
+inline constexpr double kCorrespondence = 1.5;  // mm
+
+/// How a result compares with the truth. Distances are from the points of the reported curves to the true curve (not to
+/// its samples), each point weighted by the length that it stands for; they cover the parts that correspond to a true
+/// seam. An open seam is taken to go on straight beyond its ends by the range of correspondence: reaching too far is an
+/// error of the ends, not of the curve.
+struct Score {
+    double rms_mm = 0;
+    double p95_mm = 0;
+    double max_mm = 0;
+    double found = 0;                   ///< share of the true length near a reported curve
+    double false_share = 0;             ///< length reported where there is no seam, over the true length
+    double repeated_share = 0;          ///< length reported more than once, over the true length
+    std::vector<double> end_errors_mm;  ///< first and last end of each open true seam: distance along the seam to the
+                                        ///< nearest end of a reported curve; the seam's length when there is none
+};
+
+/// Compares extracted seams, by their points.
+Score score(std::span<const Seam> seams, const Truth& truth);
+
+/// Compares fitted models, by points of their curves every 0.25 mm.
+Score score(std::span<const SeamModel> models, const Truth& truth);
+
+}  // namespace seampath

@@ -1,0 +1,151 @@
+#include "datasets/score.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/datasets/scene_laws.hpp"
+
+namespace seampath {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::SizeIs;
+
+Truth truth_of(SceneKind kind) {
+    return make_scene(scene_options(static_cast<int>(kind))).truth;
+}
+
+/// Every tenth true point from `begin` to `end`, moved by `shift` along the first flank's normal.
+Seam report(const TruthSeam& seam, double shift = 0, double begin = 0, double end = 1) {
+    Seam reported;
+    reported.closed = seam.closed && begin == 0 && end == 1;
+    const auto n = static_cast<double>(seam.points.size());
+    for (auto i = static_cast<std::size_t>(begin * n); i < static_cast<std::size_t>(end * n); i += 10) {
+        const TruthPoint& point = seam.points[i];
+        reported.points.push_back({point.p + shift * point.n1, point.n1, point.n2});
+    }
+    if (end == 1 && !seam.closed) {
+        const TruthPoint& point = seam.points.back();
+        reported.points.push_back({point.p + shift * point.n1, point.n1, point.n2});
+    }
+    return reported;
+}
+
+std::vector<Seam> report_all(const Truth& truth, double shift = 0) {
+    std::vector<Seam> seams;
+    for (const TruthSeam& seam : truth.seams) {
+        seams.push_back(report(seam, shift));
+    }
+    return seams;
+}
+
+class ScoreOfScene : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, ScoreOfScene, all_scenes(), scene_test_name);
+
+TEST_P(ScoreOfScene, TruthIsPerfect) {
+    const Truth truth = truth_of(static_cast<SceneKind>(GetParam()));
+    const Score s = score(report_all(truth), truth);
+    EXPECT_LT(s.max_mm, 1e-9);
+    EXPECT_NEAR(s.found, 1, 1e-9);
+    EXPECT_EQ(s.false_share, 0);
+    EXPECT_NEAR(s.repeated_share, 0, 1e-4);
+    EXPECT_THAT(s.end_errors_mm, Each(DoubleNear(0, 1e-9)));
+    EXPECT_THAT(s.end_errors_mm, SizeIs(truth.seams[0].closed ? 0 : 2 * truth.seams.size()));
+}
+
+TEST_P(ScoreOfScene, ShiftIsMeasured) {
+    const Truth truth = truth_of(static_cast<SceneKind>(GetParam()));
+    const Score s = score(report_all(truth, 0.3), truth);
+    EXPECT_NEAR(s.rms_mm, 0.3, 1e-4);
+    EXPECT_NEAR(s.p95_mm, 0.3, 1e-4);
+    EXPECT_NEAR(s.max_mm, 0.3, 1e-4);
+    EXPECT_NEAR(s.found, 1, 1e-9);
+    EXPECT_EQ(s.false_share, 0);
+}
+
+TEST(Score, DistanceIsFromTheCurveNotFromItsSamples) {
+    Truth truth = truth_of(SceneKind::box_on_plate);
+    const std::vector<Seam> seams = report_all(truth);
+    TruthSeam thinned{true, {}};
+    for (std::size_t i = 0; i + 5 < truth.seams[0].points.size(); i += 7) {
+        thinned.points.push_back(truth.seams[0].points[i]);
+    }
+    truth.seams = {thinned};
+    EXPECT_LT(score(seams, truth).max_mm, 2e-3);  // the samples are up to 0.35 mm away
+}
+
+TEST(Score, MissingPartLowersFoundAndShowsAtTheEnd) {
+    const Truth truth = truth_of(SceneKind::tee);
+    const double length = (truth.seams[0].points.back().p - truth.seams[0].points[0].p).norm();
+    const std::vector<Seam> seams{report(truth.seams[0], 0, 0.2, 1), report(truth.seams[1])};
+    const Score s = score(seams, truth);
+    EXPECT_NEAR(s.found, 1 - (0.2 * length - kCorrespondence) / (2 * length), 1e-3);
+    ASSERT_THAT(s.end_errors_mm, SizeIs(4));
+    EXPECT_NEAR(s.end_errors_mm[0], 0.2 * length, 0.1);
+    EXPECT_NEAR(s.end_errors_mm[1], 0, 1e-9);
+    EXPECT_LT(s.max_mm, 1e-9);
+}
+
+TEST(Score, ReachingTooFarIsAnErrorOfTheEnd) {
+    const Truth truth = truth_of(SceneKind::tee);
+    std::vector<Seam> seams = report_all(truth);
+    const TruthPoint& last = truth.seams[0].points.back();
+    for (int i = 1; i <= 50; ++i) {
+        seams[0].points.push_back({last.p + 0.1 * i * last.tangent, last.n1, last.n2});
+    }
+    const Score s = score(seams, truth);
+    EXPECT_NEAR(s.end_errors_mm[1], 5, 1e-9);
+    EXPECT_LT(s.max_mm, 1e-9);
+    const double length = 2 * (last.p - truth.seams[0].points[0].p).norm();
+    EXPECT_NEAR(s.false_share, (5 - kCorrespondence) / length, 1e-9);
+}
+
+TEST(Score, ForeignCurveIsFalse) {
+    const Truth truth = truth_of(SceneKind::tee);
+    std::vector<Seam> seams = report_all(truth);
+    seams.push_back(report(truth.seams[0], 20));
+    const Score s = score(seams, truth);
+    EXPECT_NEAR(s.false_share, 0.5, 1e-9);
+    EXPECT_LT(s.max_mm, 1e-9);
+    EXPECT_NEAR(s.found, 1, 1e-9);
+}
+
+TEST(Score, SeamReportedTwiceIsRepeated) {
+    const Truth truth = truth_of(SceneKind::pipe_on_pipe);
+    const std::vector<Seam> seams{report(truth.seams[0]), report(truth.seams[0], 0.1)};
+    EXPECT_NEAR(score(seams, truth).repeated_share, 1, 0.01);
+}
+
+TEST(Score, NothingReportedIsNothingFound) {
+    const Truth truth = truth_of(SceneKind::tee);
+    const Score s = score(std::vector<Seam>{}, truth);
+    EXPECT_EQ(s.found, 0);
+    EXPECT_EQ(s.false_share, 0);
+    EXPECT_EQ(s.max_mm, 0);
+    EXPECT_THAT(s.end_errors_mm,
+                Each(DoubleNear((truth.seams[0].points.back().p - truth.seams[0].points[0].p).norm(), 1e-9)));
+}
+
+TEST(Score, ModelIsComparedByItsCurve) {
+    const Truth truth = truth_of(SceneKind::tee);
+    std::vector<SeamModel> models;
+    for (const TruthSeam& seam : truth.seams) {
+        SeamModel model;
+        const Eigen::Vector3d a = seam.points.front().p + 0.05 * seam.points.front().n1;
+        const Eigen::Vector3d b = seam.points.back().p + 0.05 * seam.points.back().n1;
+        const double length = (b - a).norm();
+        model.curve.knots = {0, 0, 0, 0, length, length, length, length};
+        model.curve.control = {a, a + (b - a) / 3, a + (b - a) * 2 / 3, b};
+        models.push_back(model);
+    }
+    const Score s = score(models, truth);
+    EXPECT_NEAR(s.rms_mm, 0.05, 1e-9);
+    EXPECT_NEAR(s.found, 1, 1e-9);
+    EXPECT_THAT(s.end_errors_mm, Each(DoubleNear(0, 1e-9)));
+}
+
+}  // namespace
+}  // namespace seampath
