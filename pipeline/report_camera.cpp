@@ -61,7 +61,7 @@ public:
           right_(toward.unitOrthogonal().cast<float>()),
           up_(toward_.cross(right_)),
           cell_(static_cast<float>(2.4 * scene.radius_mm / kCells)),
-          nearest_(kCells * kCells, -std::numeric_limits<float>::max()) {
+          nearest_(std::size_t{kCells} * kCells, -std::numeric_limits<float>::max()) {
         for (const ViewCloud& cloud : scene.clouds) {
             for (std::size_t i = 0; i < cloud.points.size(); i += kPointStep) {
                 if (const int k = index(cloud.points[i]); k >= 0) {

@@ -30,7 +30,7 @@ ReportRow count(std::string name, std::string label, std::size_t value) {
     return {std::move(name), std::move(label), static_cast<std::int64_t>(value), "", "", 0};
 }
 
-ReportRow fact(std::string name, std::string label, std::string value) {
+ReportRow fact(std::string name, std::string label, std::string_view value) {
     return {std::move(name), std::move(label), valid_utf8(value), "", "", 0};
 }
 
@@ -90,7 +90,7 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
         deviation.pass,
         valid_utf8(deviation.verdict),
         {
-            fact("kind", "Joint", std::string(name(model.kind))),
+            fact("kind", "Joint", name(model.kind)),
             {"closed", "Closed", model.closed, "", "", 0},
             number("confidence", "Confidence of detection", seam.confidence, "", 2),
             number("length_mm", "Length", model.length_mm, "mm"),

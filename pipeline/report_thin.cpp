@@ -222,7 +222,7 @@ std::array<ViewCloud, 2> thin_scan(const Scan& scan, const std::vector<Seam>& se
     const Eigen::Vector3d shift = scan.origin_mm - centre;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
         if (mixed(i) <= (near[i] ? keep_near : keep_far)) {
-            clouds[near[i] ? 0 : 1].points.push_back((scan.points[i].cast<double>() + shift).cast<float>());
+            clouds[near[i] ? 0 : 1].points.emplace_back((scan.points[i].cast<double>() + shift).cast<float>());
         }
     }
     for (ViewCloud& cloud : clouds) {

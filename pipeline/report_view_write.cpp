@@ -119,7 +119,8 @@ std::string still_cloud(const ViewCloud& cloud, const Projection& project) {
         const Eigen::Vector3d p = project(cloud.points[i].cast<double>());
         if (p.x() > 0 && p.x() < kWidth && p.y() > 0 && p.y() < kHeight) {
             const double shade = std::abs(cloud.normals[i].cast<double>().dot(light));
-            paths[std::min<std::size_t>(3, static_cast<std::size_t>(4 * shade))] += 'M' + place(p) + "h0";
+            paths[std::min<std::size_t>(3, static_cast<std::size_t>(4 * shade))].append("M").append(place(p)).append(
+                "h0");
         }
     }
     std::string svg;
@@ -136,9 +137,9 @@ std::string still_seam(const ViewScene& scene, const ViewSeam& seam, const Proje
         const std::string stroke = colour(scene, seam, seam.samples[i]);
         std::string path = 'M' + place(project(seam.samples[i].p));
         while (i + 1 < seam.samples.size() && colour(scene, seam, seam.samples[i]) == stroke) {
-            path += 'L' + place(project(seam.samples[++i].p));
+            path.append("L").append(place(project(seam.samples[++i].p)));
         }
-        svg += "<path class=\"still-seam\" stroke=\"" + stroke + "\" d=\"" + path + "\"/>";
+        svg.append("<path class=\"still-seam\" stroke=\"").append(stroke).append("\" d=\"").append(path).append("\"/>");
     }
     return svg;
 }
