@@ -12,6 +12,7 @@ namespace seampath::detail {
 namespace {
 
 constexpr std::size_t kLeastNeighbours = 6;
+constexpr double kTouch = 1.8;      // cells; means of cells that share a corner are mostly nearer
 
 void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
     if (surfel.neighbours.size() < kLeastNeighbours) {
@@ -31,6 +32,26 @@ void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
     solver.computeDirect(scatter);
     surfel.n = solver.eigenvectors().col(0);
     surfel.flatness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(surfel.neighbours.size()));
+}
+
+// What hangs together with the surfel inside the ball: the other face of a thin wall does not, though it is as near.
+void collect_neighbours(Surfels& surfels, std::uint32_t i) {
+    thread_local std::vector<char> seen;      // all zero between calls
+    seen.resize(std::max(seen.size(), surfels.at.size()), 0);
+    Surfel& s = surfels.at[i];
+    s.neighbours = {i};
+    seen[i] = 1;
+    for (std::size_t k = 0; k < s.neighbours.size(); ++k) {
+        for (const std::uint32_t j : surfels.at[s.neighbours[k]].next) {
+            if (!seen[j] && (surfels.at[j].p - s.p).squaredNorm() <= surfels.radius * surfels.radius) {
+                seen[j] = 1;
+                s.neighbours.push_back(j);
+            }
+        }
+    }
+    for (const std::uint32_t j : s.neighbours) {
+        seen[j] = 0;
+    }
 }
 
 struct Edge {
@@ -117,11 +138,12 @@ std::vector<std::uint32_t> make_consistent(Surfels& surfels) {
     std::vector<Surfel>& at = surfels.at;
     std::vector<Edge> edges;
     for (std::uint32_t a = 0; a < at.size(); ++a) {
-        for (const std::uint32_t b : at[a].neighbours) {
+        for (const std::uint32_t b : at[a].next) {
             if (b > a && at[a].n.squaredNorm() > 0 && at[b].n.squaredNorm() > 0) {
-                // Normals that agree cost nothing; those that would have to jump over a thin wall cost more the further apart.
-                const double distance = (at[a].p - at[b].p).norm() / surfels.radius;
-                edges.push_back({static_cast<float>((1 - std::abs(at[a].n.dot(at[b].n))) * (1 + distance) + 1e-3 * distance), a, b});
+                // Steps within a sheet are cheap, steps from one face of a thin wall to the other dear.
+                const Eigen::Vector3d d = (at[b].p - at[a].p).normalized();
+                const double off_sheet = std::abs(at[a].n.dot(d)) + std::abs(at[b].n.dot(d));
+                edges.push_back({static_cast<float>(1 - std::abs(at[a].n.dot(at[b].n)) + 0.5 * off_sheet), a, b});
             }
         }
     }
@@ -147,13 +169,14 @@ bool turn_outwards(Surfels& surfels, const PointGrid& grid, const std::vector<st
     const Eigen::Vector3d low = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
     const Eigen::Vector3d high = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
     const double reach = std::min((high - low).norm(), 400 * grid.cell());
+    const double start = 2 * grid.cell();      // past the surfel's own surface, not past a thin wall's other face
     const std::size_t stride = std::max<std::size_t>(1, at.size() / 4000);
     std::vector<int> vote(at.size(), 0);
     parallel_for((at.size() + stride - 1) / stride, 32, [&](std::size_t k) {
         const Surfel& s = at[k * stride];
         if (s.n.squaredNorm() > 0) {
-            vote[k * stride] = static_cast<int>(blocked(grid, s.p, -s.n, surfels.radius, reach)) -
-                               static_cast<int>(blocked(grid, s.p, s.n, surfels.radius, reach));
+            vote[k * stride] = static_cast<int>(blocked(grid, s.p, -s.n, start, reach)) -
+                               static_cast<int>(blocked(grid, s.p, s.n, start, reach));
         }
     });
     std::vector<int> votes(at.size(), 0), size(at.size(), 0);
@@ -178,15 +201,19 @@ Surfels make_surfels(const PointGrid& grid, double radius) {
     surfels.radius = radius;
     surfels.at.resize(grid.cells());
     parallel_for(grid.cells(), 256, [&](std::size_t i) { surfels.at[i].p = grid.mean(i); });
+    const double touch = kTouch * grid.cell();
     parallel_for(grid.cells(), 64, [&](std::size_t i) {
         Surfel& s = surfels.at[i];
-        const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
+        const Eigen::Vector3d reach = Eigen::Vector3d::Constant(touch);
         grid.for_cells_in_box(s.p - reach, s.p + reach, [&](std::size_t j) {
-            if ((surfels.at[j].p - s.p).squaredNorm() <= radius * radius) {
-                s.neighbours.push_back(static_cast<std::uint32_t>(j));
+            if (j != i && (surfels.at[j].p - s.p).squaredNorm() <= touch * touch) {
+                s.next.push_back(static_cast<std::uint32_t>(j));
             }
         });
-        fit_plane(s, surfels.at);
+    });
+    parallel_for(grid.cells(), 64, [&](std::size_t i) {
+        collect_neighbours(surfels, static_cast<std::uint32_t>(i));
+        fit_plane(surfels.at[i], surfels.at);
     });
     return surfels;
 }

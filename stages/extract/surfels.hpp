@@ -16,7 +16,8 @@ struct Surfel {
     Eigen::Vector3d p;                        ///< mean of the cell's points, relative to the scan's origin, mm
     Eigen::Vector3d n{0, 0, 0};               ///< unit, out of the material; zero where too few neighbours
     double flatness = 0;                      ///< rms distance of the neighbours from their plane, mm
-    std::vector<std::uint32_t> neighbours;    ///< surfels within the radius, itself included, ascending
+    std::vector<std::uint32_t> next;          ///< surfels that touch it, ascending
+    std::vector<std::uint32_t> neighbours;    ///< surfels within the radius that hang together with it; itself first
 };
 
 struct Surfels {

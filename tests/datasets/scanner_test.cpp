@@ -122,7 +122,7 @@ TEST(Scanner, NoiseAcrossASurfaceHasTheAskedSigma) {
 }
 
 TEST(Scanner, NoiseGrowsWithTheSquareOfTheDistance) {
-    ScannerOptions o = perfect(0.2);
+    ScannerOptions o = perfect(0.4);
     o.sigma_mm = 0.05;
     Scene near = block(60);
     const double at_working_distance = rms_of_top(take_view(near, o, 1, 0, 1));
@@ -178,17 +178,18 @@ bool is_free(const Scene& scene, const Vector3d& from, const Vector3d& to) {
 }
 
 TEST(Scanner, EveryPointIsSeenByBothEyes) {
+    const int kBeside = 9;  // of 36 views: along the web, with the second eye on its other side
     for (const SceneKind kind : {SceneKind::tee, SceneKind::pipe_on_pipe_oblique}) {
         const Scene scene = make_scene(scene_options(static_cast<int>(kind)));
         for (const SensorKind sensor : {SensorKind::camera, SensorKind::profile}) {
             ScannerOptions o = perfect(2);
             o.sensor = sensor;
-            o.views = 6;
-            const Station station = make_station(scene, o, Random(1, 10), 2);
-            const View view = take_view(scene, o, 1, 2, 1);
+            o.views = 36;
+            const Station station = make_station(scene, o, Random(1, 10), kBeside);
+            const View view = take_view(scene, o, 1, kBeside, 1);
             ASSERT_EQ(view.width, station.width);
             int in_shadow = 0;
-            for (std::size_t i = 0; i < view.points.size(); i += 5) {
+            for (std::size_t i = 0; i < view.points.size(); i += 13) {
                 const double distance = true_distance(scene, station, i);
                 if (distance == 0) {
                     EXPECT_FALSE(measured(view.points[i]));
@@ -203,7 +204,7 @@ TEST(Scanner, EveryPointIsSeenByBothEyes) {
                     ASSERT_FALSE(measured(view.points[i])) << p.transpose();
                 }
             }
-            EXPECT_GT(in_shadow, 5) << name(kind) << static_cast<int>(sensor);
+            EXPECT_GT(in_shadow, 10) << name(kind) << static_cast<int>(sensor);
         }
     }
 }
@@ -281,7 +282,7 @@ TEST(Scanner, MixedPixelsHangBetweenTheSidesOfADepthStep) {
 
 TEST(Scanner, GhostsStayNearTheJoint) {
     const Scene scene = make_scene(scene_options(static_cast<int>(SceneKind::tee)));
-    ScannerOptions o = perfect(0.5);
+    ScannerOptions o = perfect(1);
     const View clean = take_view(scene, o, 1, 0, 1);
     o.ghosts = 0.2;
     const View ghostly = take_view(scene, o, 1, 0, 1);
@@ -380,7 +381,7 @@ TEST(Scanner, UsualScannerSeesBothFlanksOfEverySeam) {
     for (int kind = 0; kind < static_cast<int>(kSceneNames.size()); ++kind) {
         const Scene scene = make_scene(scene_options(kind, 4));
         ScannerOptions o;
-        o.pitch_x_mm = o.pitch_y_mm = 0.8;
+        o.pitch_x_mm = o.pitch_y_mm = 1.2;
         std::vector<Vector3d> points;
         for (int i = 0; i < o.views; ++i) {
             for (const Vector3d& p : take_view(scene, o, 4, i, 2).points) {
@@ -390,7 +391,7 @@ TEST(Scanner, UsualScannerSeesBothFlanksOfEverySeam) {
             }
         }
         for (const TruthSeam& seam : scene.truth.seams) {
-            for (std::size_t i = 100; i + 100 < seam.points.size(); i += 100) {
+            for (std::size_t i = 100; i + 100 < seam.points.size(); i += 200) {
                 const TruthPoint& at = seam.points[i];
                 int seen[2] = {0, 0};
                 for (const Vector3d& p : points) {
@@ -400,8 +401,8 @@ TEST(Scanner, UsualScannerSeesBothFlanksOfEverySeam) {
                         seen[1] += std::abs(off.dot(at.n2)) < 1 && off.dot(at.n1) > 1.5 ? 1 : 0;
                     }
                 }
-                EXPECT_GT(seen[0], 3) << name(static_cast<SceneKind>(kind)) << ' ' << i;
-                EXPECT_GT(seen[1], 3) << name(static_cast<SceneKind>(kind)) << ' ' << i;
+                EXPECT_GT(seen[0], 1) << name(static_cast<SceneKind>(kind)) << ' ' << i;
+                EXPECT_GT(seen[1], 1) << name(static_cast<SceneKind>(kind)) << ' ' << i;
             }
         }
     }
