@@ -167,17 +167,17 @@ void apply_override(const std::vector<Section>& sections, const Override& given,
                problems);
 }
 
-/// What no single field's bounds can say.
-void check_robots(const Config& config, const std::string& origin, Problems& problems) {
-    std::string_view rest = config.export_.robots;
-    while (!rest.empty()) {
-        const auto comma = rest.find(',');
-        const std::string_view robot = rest.substr(0, comma);
-        if (std::find(kRobotNames.begin(), kRobotNames.end(), robot) == kRobotNames.end()) {
-            problems.add(origin, "/export/robots",
-                         json_excerpt(robot) + " is none of " + join(kRobotNames) + hint(robot, kRobotNames));
+/// What no single field's bounds can say, under the origin that set the option last.
+void check_export(const Config& config, const std::string& file, std::span<const Override> overrides,
+                  Problems& problems) {
+    for (const std::string& problem : export_problems(config.export_)) {
+        const auto colon = problem.find(": ");
+        const std::string key = problem.substr(0, colon);
+        std::string origin = file;
+        for (const auto& given : overrides) {
+            origin = given.path == "export." + key ? given.origin : origin;
         }
-        rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+        problems.add(origin, "/export/" + key, problem.substr(colon + 2));
     }
 }
 
@@ -212,14 +212,10 @@ Config parse_config(std::string_view text, const std::string& file_name, std::sp
     Problems problems;
     const auto sections = describe(config);
     apply_text(sections, text, file_name, problems);
-    check_robots(config, file_name, problems);
     for (const auto& given : overrides) {
-        const std::string robots_before = config.export_.robots;
         apply_override(sections, given, problems);
-        if (config.export_.robots != robots_before) {
-            check_robots(config, given.origin, problems);
-        }
     }
+    check_export(config, file_name, overrides, problems);
     problems.throw_if_any();
     return config;
 }

@@ -220,14 +220,11 @@ std::string settings_table(const Report& report) {
     return html + "</tbody></table></div></details>\n";
 }
 
-std::string timing_table(const Report& report) {
+std::string stage_table(const Report& report) {
     std::string html =
-        "<h2>Stages</h2><div class=\"scroll\"><table><thead><tr><th>Stage</th><th class=\"num\">Time, s</th>"
-        "<th>Result</th></tr></thead><tbody>";
+        "<h2>Stages</h2><div class=\"scroll\"><table><thead><tr><th>Stage</th><th>Result</th></tr></thead><tbody>";
     for (const StageTiming& timing : report.timings) {
-        html += "<tr><td>" + escape_html(timing.stage) + "</td><td class=\"num\">" +
-                (timing.resumed ? "resumed" : decimal(timing.seconds, 2)) + "</td><td>" + escape_html(timing.summary) +
-                "</td></tr>";
+        html += "<tr><td>" + escape_html(timing.stage) + "</td><td>" + escape_html(timing.summary) + "</td></tr>";
     }
     return html + "</tbody></table></div>\n";
 }
@@ -258,7 +255,7 @@ std::string report_html(const PartResult& part) {
     for (std::size_t i = 0; i < report.seams.size(); ++i) {
         html += seam_section(part, report, i);
     }
-    html += program_table(report) + scan_section(report) + settings_table(report) + timing_table(report);
+    html += program_table(report) + scan_section(report) + settings_table(report) + stage_table(report);
     html +=
         "<footer>Lengths in mm, positions in the frame of the scan. Seams are numbered from 0 as in the files beside "
         "this page; "

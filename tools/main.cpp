@@ -10,7 +10,6 @@
 namespace seampath {
 namespace {
 
-constexpr const char* kVersion = "0.1.0";  // the same as in CMakeLists.txt, which a test holds
 constexpr const char* kExamples =
     "Examples:\n"
     "  seampath run tee.ply --out out             scan in, seams, robot programs and report out\n"
@@ -80,7 +79,7 @@ void check_command_names(const CLI::App& app, std::span<char*> words) {
 
 int run_program(int argc, char** argv) {
     CLI::App program("Seampath: scans of parts in, measured seams and robot programs out.", "seampath");
-    program.set_version_flag("--version", std::string("seampath ") + kVersion);
+    program.set_version_flag("--version", "seampath " SEAMPATH_VERSION);
     program.require_subcommand(1);
     program.footer(kExamples);
     const std::vector<Command> commands{run_command(program), check_command(program), info_command(program),

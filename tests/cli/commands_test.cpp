@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 TEST(Cli, RunPrintsATableAndWhereTheResultsAre) {
     const TestFolder out;
-    const Outcome run = seampath_program({"run", small_tee(), "--out", out.path()});
+    const Outcome run = seampath_program(run_small_tee(out.path()));
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_THAT(run.out,
                 AllOf(HasSubstr("scan: pass\n"), HasSubstr("fillet"), HasSubstr((out.path() / "report.html").string()),
@@ -28,7 +28,7 @@ TEST(Cli, RunPrintsATableAndWhereTheResultsAre) {
 
 TEST(Cli, RunWithJsonPrintsTheReport) {
     const TestFolder out;
-    const Outcome run = seampath_program({"run", small_tee(), "--out", out.path(), "--json"});
+    const Outcome run = seampath_program(run_small_tee(out.path(), {"--json"}));
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.out, text_of(out.path() / "report.json"));
 }
@@ -37,8 +37,8 @@ TEST(Cli, ResolvedConfigRunsAgainUnchanged) {
     const TestFolder first;
     const TestFolder second;
     const std::string config = first.path() / "config.resolved.json";
-    EXPECT_EQ(seampath_program({"run", small_tee(), "--out", first.path(), "--set", "plan.speed_mm_s=6", "--robot",
-                                "ur,csv", "--joint", "fillet"})
+    EXPECT_EQ(seampath_program(
+                  run_small_tee(first.path(), {"--set", "plan.speed_mm_s=6", "--robot", "ur,csv", "--joint", "fillet"}))
                   .status,
               0);
     EXPECT_THAT(text_of(config),
@@ -50,10 +50,8 @@ TEST(Cli, ResolvedConfigRunsAgainUnchanged) {
 
 TEST(Cli, SecondRunTakesOverWhatFreshAndFromComputeAgain) {
     const TestFolder out;
-    const std::vector<std::string> run{"run", small_tee(), "--out", out.path()};
-    const auto resumed = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), run.begin(), run.end());
-        const std::string err = seampath_program(more).err;
+    const auto resumed = [&](const std::vector<std::string>& more) {
+        const std::string err = seampath_program(run_small_tee(out.path(), more)).err;
         int count = 0;
         for (auto at = err.find("(resumed)"); at != std::string::npos; at = err.find("(resumed)", at + 1)) {
             ++count;
@@ -65,7 +63,7 @@ TEST(Cli, SecondRunTakesOverWhatFreshAndFromComputeAgain) {
     EXPECT_EQ(resumed({"--from", "validate"}), 3);
     EXPECT_EQ(resumed({"--from", "export"}), 5);
     EXPECT_EQ(resumed({"--fresh"}), 0);
-    const Outcome wrong = seampath_program({"run", small_tee(), "--out", out.path(), "--from", "validat"});
+    const Outcome wrong = seampath_program(run_small_tee(out.path(), {"--from", "validat"}));
     EXPECT_EQ(wrong.status, 2);
     EXPECT_THAT(wrong.err, HasSubstr("did you mean \"validate\"?"));
 }
@@ -77,8 +75,9 @@ TEST(Cli, SeveralScansGoIntoFoldersOfTheirNamesAndOneFailureStopsNoOther) {
     fs::copy_file(small_tee(), folder.path() / "a" / "tee.ply");
     fs::copy_file(small_tee(), folder.path() / "b" / "tee.ply");
     const fs::path out = folder.path() / "out";
-    const Outcome run = seampath_program({"run", folder.path() / "a" / "tee.ply", folder.path() / "gone.ply",
-                                          folder.path() / "b" / "tee.ply", "--out", out});
+    const Outcome run =
+        seampath_program({"run", folder.path() / "a" / "tee.ply", folder.path() / "gone.ply",
+                          folder.path() / "b" / "tee.ply", "--out", out, "--set", "validate.tolerance_mm=3"});
     EXPECT_EQ(run.status, 2);
     EXPECT_THAT(run.err, HasSubstr("gone: read: "));
     EXPECT_TRUE(fs::exists(out / "tee" / "report.html"));
@@ -88,8 +87,8 @@ TEST(Cli, SeveralScansGoIntoFoldersOfTheirNamesAndOneFailureStopsNoOther) {
     EXPECT_EQ(summary.at("parts")[0].at("result"), "pass");
     EXPECT_EQ(summary.at("parts")[1].at("exit_status"), 2);
     EXPECT_EQ(summary.at("parts")[2].at("name"), "tee-2");
-    const Outcome json = seampath_program(
-        {"run", folder.path() / "a" / "tee.ply", folder.path() / "b" / "tee.ply", "--out", out, "--json"});
+    const Outcome json = seampath_program({"run", folder.path() / "a" / "tee.ply", folder.path() / "b" / "tee.ply",
+                                           "--out", out, "--json", "--set", "validate.tolerance_mm=3"});
     EXPECT_EQ(json.status, 0) << json.err;
     EXPECT_EQ(nlohmann::json::parse(json.out).at("parts").size(), 2u);
 }
@@ -110,13 +109,13 @@ TEST(Cli, CheckTellsAllProblemsOfAConfig) {
 
 TEST(Cli, InfoTellsWhatIsInEveryKindOfFile) {
     const TestFolder out;
-    ASSERT_EQ(seampath_program({"run", small_tee(), "--out", out.path()}).status, 0);
+    ASSERT_EQ(seampath_program(run_small_tee(out.path())).status, 0);
     EXPECT_THAT(seampath_program({"info", small_tee()}).out,
                 AllOf(HasSubstr("what: scan"), HasSubstr("points: "), HasSubstr("size_mm: ")));
     const auto truth =
         nlohmann::json::parse(seampath_program({"info", small_tee().parent_path() / "truth.json", "--json"}).out);
     EXPECT_EQ(truth.at("what"), "truth of a data set");
-    EXPECT_NEAR(truth.at("content").at("seams")[0].at("length_mm").get<double>(), 60, 0.2);
+    EXPECT_NEAR(truth.at("content").at("seams")[0].at("length_mm").get<double>(), 40, 0.2);
     EXPECT_THAT(seampath_program({"info", out.path() / "3-nodes.json"}).out,
                 AllOf(HasSubstr("artefact"), HasSubstr("stage: place")));
     EXPECT_THAT(seampath_program({"info", out.path() / "config.resolved.json"}).out, HasSubstr("what: config"));

@@ -107,6 +107,14 @@ inline const std::filesystem::path& small_tee() {
     return scan;
 }
 
+/// The command line that runs the small tee into a folder.
+inline std::vector<std::string> run_small_tee(const std::filesystem::path& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"run", small_tee(), "--out", out};
+    words.insert(words.end(), {"--set", "validate.tolerance_mm=" + std::to_string(kLooseToleranceMm)});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
 inline bool holds_temporary_files(const std::filesystem::path& folder) {
     for (const auto& [name, text] : contents(folder)) {
         if (name.find(".tmp.") != std::string::npos) {

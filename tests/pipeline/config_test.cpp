@@ -48,7 +48,7 @@ TEST(Config, TellsAllProblemsAtOnceEachWithItsPathAndAHint) {
               "cell.json: /export/base_from_scan: holds 2 values; 7 numbers are needed\n"
               "cell.json: /export/even_if_out_of_tolerance: 1 is neither true nor false\n"
               "cell.json: /export/program_name: 7 is not a text\n"
-              "cell.json: /export/robots: \"kuka\" is none of csv, json, abb, ur");
+              "cell.json: /export/robots: \"kuka\" is no known robot; one of csv, json, abb, ur was needed");
 }
 
 TEST(Config, ChecksOverridesLikeTheFile) {
@@ -63,16 +63,17 @@ TEST(Config, ChecksOverridesLikeTheFile) {
               "--set: /speed_mm_s: an option is named stage.key; did you mean /plan/speed_mm_s?\n"
               "--joint: /extract/joint: \"saddel\" is none of auto, fillet, lap, butt, v-groove, corner, saddle; "
               "did you mean \"saddle\"?\n"
-              "--robot: /export/robots: \"abc\" is none of csv, json, abb, ur; did you mean \"abb\"?");
+              "--robot: /export/robots: \"abc\" is no known robot; one of csv, json, abb, ur was needed");
 }
 
 TEST(Config, OverridesWinOverTheFileAndTextNeedsNoQuotes) {
     const std::vector<Override> overrides{
-        parse_override("plan.speed_mm_s=4.5"), parse_override("export.program_name=a=b"),
+        parse_override("plan.speed_mm_s=4.5"), parse_override("export.program_name=tee_7"),
         parse_override("export.ur_tcp=[0,0,120,0,0,0]"), parse_override("export.even_if_out_of_tolerance=true")};
     const Config config = parse_config(R"({"plan": {"speed_mm_s": 6}})", "cell.json", overrides);
     EXPECT_EQ(config.plan.speed_mm_s, 4.5);
-    EXPECT_EQ(config.export_.program_name, "a=b");
+    EXPECT_EQ(config.export_.program_name, "tee_7");
+    EXPECT_EQ(parse_override("export.program_name=a=b").value, "a=b");
     EXPECT_EQ(config.export_.ur_tcp[2], 120);
     EXPECT_TRUE(config.export_.even_if_out_of_tolerance);
     EXPECT_THROW(parse_override("plan.speed_mm_s"), InputError);
@@ -94,7 +95,7 @@ TEST(Config, ResolvedTextRunsAgainUnchanged) {
     config.place.chord_tolerance_mm = 0.1 + 0.2;
     config.extract.joint = JointChoice::fillet;
     config.export_.base_from_scan = {1.0 / 3, -2e-300, 3, 1, 0, 0, 0};
-    config.export_.program_name = "tee \"7\"\n";
+    config.export_.program_name = "tee_7";
     const std::string text = config_json(config);
     const Config again = parse_config(text, "config.resolved.json");
     EXPECT_EQ(again.place.chord_tolerance_mm, config.place.chord_tolerance_mm);

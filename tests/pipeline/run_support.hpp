@@ -62,11 +62,14 @@ inline void expect_same_files(const std::filesystem::path& a, const std::filesys
     }
 }
 
+/// These tests are about runs, not accuracy: the small, coarse tee passes whatever extraction makes of it.
+inline constexpr double kLooseToleranceMm = 3;
+
 /// scan.ply and truth.json of a tee small and coarse enough for many runs.
 inline void write_small_tee(const std::filesystem::path& folder) {
     SceneOptions scene;
-    scene.length_mm = 60;
-    scene.margin_mm = 25;
+    scene.length_mm = 40;
+    scene.margin_mm = 15;
     ScannerOptions scanner;
     scanner.pitch_x_mm = 0.5;
     scanner.pitch_y_mm = 0.5;

@@ -28,6 +28,12 @@ const fs::path& tee_scan() {
     return scan;
 }
 
+Config loose_config() {
+    Config config;
+    config.validate.tolerance_mm = kLooseToleranceMm;
+    return config;
+}
+
 Stages resumed_stages(const PartResult& part) {
     Stages stages;
     for (const auto& timing : part.timings) {
@@ -40,7 +46,7 @@ Stages resumed_stages(const PartResult& part) {
 
 TEST(Run, WritesEveryFileOfTheContract) {
     const TestFolder out;
-    const PartResult part = run_part(tee_scan(), out.path(), Config());
+    const PartResult part = run_part(tee_scan(), out.path(), loose_config());
     ASSERT_FALSE(part.models.empty());
     EXPECT_TRUE(part.pass());
     const auto files = contents(out.path());
@@ -61,23 +67,23 @@ TEST(Run, WritesEveryFileOfTheContract) {
 TEST(Run, SameRunTwiceGivesSameBytes) {
     const TestFolder first;
     const TestFolder second;
-    run_part(tee_scan(), first.path(), Config());
-    run_part(tee_scan(), second.path(), Config());
+    run_part(tee_scan(), first.path(), loose_config());
+    run_part(tee_scan(), second.path(), loose_config());
     expect_same_files(first.path(), second.path());
 }
 
 TEST(Run, UnchangedIsTakenOverFromArtefacts) {
     const TestFolder out;
-    run_part(tee_scan(), out.path(), Config());
+    run_part(tee_scan(), out.path(), loose_config());
     const auto before = contents(out.path());
-    const PartResult again = run_part(tee_scan(), out.path(), Config());
+    const PartResult again = run_part(tee_scan(), out.path(), loose_config());
     EXPECT_EQ(resumed_stages(again), (Stages{"extract", "place", "fit", "validate", "plan"}));
     EXPECT_EQ(contents(out.path()), before);
 }
 
 TEST(Run, ChangedOptionRecomputesThatStageAndThoseAfterIt) {
     const TestFolder out;
-    Config config;
+    Config config = loose_config();
     run_part(tee_scan(), out.path(), config);
     config.plan.speed_mm_s = 5;
     EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), config)),
@@ -96,36 +102,36 @@ TEST(Run, ChangedScanRecomputesEverything) {
     const TestFolder other;
     const fs::path scan = other.path() / "scan.ply";
     fs::copy_file(tee_scan(), scan);
-    run_part(scan, out.path(), Config());
+    run_part(scan, out.path(), loose_config());
     std::fstream file(scan, std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(-1, std::ios::end);
     const char byte = static_cast<char>(file.peek() ^ 1);
     file.seekp(-1, std::ios::end);
     file.write(&byte, 1);
     file.close();
-    EXPECT_EQ(resumed_stages(run_part(scan, out.path(), Config())), Stages{});
+    EXPECT_EQ(resumed_stages(run_part(scan, out.path(), loose_config())), Stages{});
 }
 
 TEST(Run, FromRecomputesThatStageOn) {
     const TestFolder out;
-    run_part(tee_scan(), out.path(), Config());
-    EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), Config(), {3})), (Stages{"extract", "place"}));
-    EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), Config(), {0})), Stages{});
+    run_part(tee_scan(), out.path(), loose_config());
+    EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), loose_config(), {3})), (Stages{"extract", "place"}));
+    EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), loose_config(), {0})), Stages{});
 }
 
 TEST(Run, DamagedArtefactIsRecomputed) {
     const TestFolder out;
-    run_part(tee_scan(), out.path(), Config());
+    run_part(tee_scan(), out.path(), loose_config());
     const auto before = contents(out.path());
     std::ofstream(out.path() / "4-models.json") << before.at("4-models.json").substr(0, 300);
-    EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), Config())),
+    EXPECT_EQ(resumed_stages(run_part(tee_scan(), out.path(), loose_config())),
               (Stages{"extract", "place", "validate", "plan"}));
     EXPECT_EQ(contents(out.path()), before);
 }
 
 TEST(Run, ProgramsOfAnEarlierConfigDoNotStayBesideAFailedSeam) {
     const TestFolder out;
-    Config config;
+    Config config = loose_config();
     run_part(tee_scan(), out.path(), config);
     ASSERT_TRUE(fs::exists(out.path() / "programs" / "abb"));
     config.validate.tolerance_mm = 1e-6;
@@ -139,7 +145,7 @@ TEST(Run, ProgramsOfAnEarlierConfigDoNotStayBesideAFailedSeam) {
 
 TEST(Run, StopsBetweenStagesAndGoesOnFromThere) {
     const TestFolder undisturbed;
-    run_part(tee_scan(), undisturbed.path(), Config());
+    run_part(tee_scan(), undisturbed.path(), loose_config());
     const TestFolder out;
     int stops = 0;
     for (bool finished = false; !finished && stops < 1000;) {
@@ -147,7 +153,7 @@ TEST(Run, StopsBetweenStagesAndGoesOnFromThere) {
         Progress progress;
         progress.stop = [&] { return asked++ >= stops; };
         try {
-            run_part(tee_scan(), out.path(), Config(), {}, progress);
+            run_part(tee_scan(), out.path(), loose_config(), {}, progress);
             finished = true;
         } catch (const Interrupted&) {
             ++stops;
@@ -160,8 +166,8 @@ TEST(Run, StopsBetweenStagesAndGoesOnFromThere) {
 
 TEST(Run, InMemoryGivesTheSameAsWithAFolder) {
     const TestFolder out;
-    const PartResult with_folder = run_part(tee_scan(), out.path(), Config());
-    const PartResult in_memory = run_part(read(tee_scan(), ReadOptions()), Config());
+    const PartResult with_folder = run_part(tee_scan(), out.path(), loose_config());
+    const PartResult in_memory = run_part(read(tee_scan(), ReadOptions()), loose_config());
     ASSERT_EQ(in_memory.plan.waypoints.size(), with_folder.plan.waypoints.size());
     for (std::size_t i = 0; i < in_memory.plan.waypoints.size(); ++i) {
         EXPECT_EQ(in_memory.plan.waypoints[i].p, with_folder.plan.waypoints[i].p);
