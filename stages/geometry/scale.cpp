@@ -46,12 +46,19 @@ double neighbour_distance(const PointGrid& grid, const Eigen::Vector3d& p, doubl
     return limit;
 }
 
-// Robust scale of the residuals of a quadric over the best-fit plane of a ball; negative when it holds too little.
-double roughness(const PointGrid& grid, const Eigen::Vector3d& p, double radius) {
+// A quadric over the best-fit plane of a ball.
+struct Patch {
+    bool valid = false;
+    double scale = 0;      // robust 1-sigma of the residuals
+    double between = 0;    // squares of sums over blocks of 0.36 radii, added up
+    double within = 0;     // squares of the same residuals, added up
+};
+
+Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) {
     std::vector<Eigen::Vector3d> q;
     grid.for_points_in_ball(p, radius, [&](const Eigen::Vector3f& x, double) { q.push_back(x.cast<double>() - p); });
     if (q.size() < 20) {
-        return -1;
+        return {};
     }
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& x : q) {
@@ -69,7 +76,43 @@ double roughness(const PointGrid& grid, const Eigen::Vector3d& p, double radius)
         const Eigen::Vector3d local = axes.transpose() * (x - mean) / radius;
         fit.add(local[1], local[2], local[0] * radius);
     }
-    return fit.solve(0) ? fit.scale() : -1;
+    if (!fit.solve(0)) {
+        return {};
+    }
+    Patch patch{true, fit.scale(), 0, 0};
+    constexpr int kBlocks = 6;      // across the ball: wide enough to hold the range of the correlation, enough to average
+    std::array<double, static_cast<std::size_t>(kBlocks* kBlocks)> sum{};
+    double blocks = 0;
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        const auto column = [](double x) { return std::clamp(static_cast<int>((x + 1) / 2 * kBlocks), 0, kBlocks - 1); };
+        const double r = fit.weight(i) > 0 ? fit.residual(i) : 0;
+        double& block = sum[static_cast<std::size_t>(column(fit.u(i)) * kBlocks + column(fit.s(i)))];
+        blocks += block == 0 && r != 0;
+        block += r;
+        patch.within += r * r;
+    }
+    for (const double s : sum) {
+        patch.between += s * s;
+    }
+    // Six coefficients took their share of what the blocks have in common.
+    patch.between *= blocks > 12 ? blocks / (blocks - 6) : 0;
+    return patch;
+}
+
+std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places, double radius) {
+    std::vector<Patch> patches(places.size());
+    parallel_for(places.size(), 16, [&](std::size_t k) { patches[k] = fit_patch(grid, places[k], radius); });
+    std::erase_if(patches, [](const Patch& patch) { return !patch.valid; });
+    return patches;
+}
+
+// Places on edges are rough for another reason: look below the median.
+double typical_scale(const std::vector<Patch>& patches) {
+    std::vector<double> scales;
+    for (const Patch& patch : patches) {
+        scales.push_back(patch.scale);
+    }
+    return quantile(scales, 0.4);
 }
 
 }  // namespace
@@ -93,15 +136,34 @@ ScanScale estimate_scale(std::span<const Eigen::Vector3f> points) {
     scale.spacing = quantile(spacing, 0.5);
     double radius = 6 * scale.spacing;
     for (int round = 0; round < 4; ++round) {
-        std::vector<double> noise(places.size());
-        parallel_for(places.size(), 16, [&](std::size_t k) { noise[k] = roughness(grid, places[k], radius); });
-        std::erase_if(noise, [](double x) { return x < 0; });
-        // Places on edges are rough for another reason: look below the median.
-        scale.noise = noise.empty() ? 0 : quantile(noise, 0.4);
+        scale.noise = typical_scale(fit_patches(grid, places, radius));
         if (6 * scale.noise <= radius) {
             break;
         }
         radius = 8 * scale.noise;      // where noise exceeds the spacing a wider ball is needed to see a surface
+    }
+    // Correlated noise shows over more than its own range: wider balls, and of those the ones that are still smooth. What
+    // such a ball sees as noise is also less biased than what a small one leaves.
+    std::vector<Eigen::Vector3d> fewer;
+    for (std::size_t k = 0; k < places.size(); k += 2) {
+        fewer.push_back(places[k]);
+    }
+    const std::vector<Patch> wide = fit_patches(grid, fewer, 4.5 * radius);
+    const double smooth = 1.3 * typical_scale(wide);
+    std::vector<double> smooth_scales;
+    double between = 0, within = 0;
+    for (const Patch& patch : wide) {
+        if (patch.scale <= smooth) {
+            smooth_scales.push_back(patch.scale);
+            between += patch.between;
+            within += patch.within;
+        }
+    }
+    // On a part with no smooth place of that size the smaller balls have to do.
+    const double wide_noise = quantile(smooth_scales, 0.5);
+    if (within > 0 && wide_noise < 2 * scale.noise) {
+        scale.noise = std::max(scale.noise, wide_noise);
+        scale.correlation = std::clamp(between / within, 1.0, 60.0);
     }
     return scale;
 }

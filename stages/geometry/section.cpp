@@ -1,6 +1,7 @@
 #include "stages/geometry/section.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -17,7 +18,30 @@ constexpr std::size_t kLeastPoints = 24;
 
 struct Sample {
     float u, s, z;
+    std::uint32_t lot;      // the same for the same point, in whatever order the points came
 };
+
+// More points than this to a flank add time and, their noise being shared, nothing to the fit: lots are drawn.
+constexpr std::size_t kEnoughPoints = 1600;
+
+std::uint32_t draw_lot(const Eigen::Vector3f& q) {
+    std::uint32_t h = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        h = (h ^ std::bit_cast<std::uint32_t>(q[axis])) * 0x9e3779b1u;
+        h ^= h >> 15;
+    }
+    return h * 0x85ebca6bu;
+}
+
+// Keeps a share of the samples, chosen by lot; the share is returned.
+double thin_out(std::vector<Sample>& samples) {
+    const double share = std::min(1.0, static_cast<double>(kEnoughPoints) / static_cast<double>(std::max<std::size_t>(1, samples.size())));
+    if (share < 1) {
+        const auto limit = static_cast<std::uint32_t>(share * 4294967295.0);
+        std::erase_if(samples, [limit](const Sample& x) { return x.lot > limit; });
+    }
+    return share;
+}
 
 struct Frame {
     Eigen::Vector3d p, t, n[2], d[2];
@@ -67,7 +91,7 @@ std::array<std::vector<Sample>, 2> gather(const PointGrid& grid, const ScanScale
             for (int k = 0; k < 2; ++k) {
                 const double u = v.dot(f.d[k]), z = v.dot(f.n[k]);
                 if (u >= w.band && u <= w.away && std::abs(z) <= base + slope * u) {
-                    samples[static_cast<std::size_t>(k)].push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z)});
+                    samples[static_cast<std::size_t>(k)].push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), draw_lot(q)});
                 }
             }
         }
@@ -80,7 +104,7 @@ struct Misfit {
     double worst = 0;
     bool at_low_end = false;
 };
-Misfit misfit(const QuadraticFit& fit, double low, double high, bool over_u, double noise) {
+Misfit misfit(const QuadraticFit& fit, double low, double high, bool over_u, double noise, double correlation) {
     std::array<double, kBins> sum{}, weight{};
     for (std::size_t i = 0; i < fit.size(); ++i) {
         const double x = ((over_u ? fit.u(i) : fit.s(i)) - low) / (high - low);
@@ -93,39 +117,13 @@ Misfit misfit(const QuadraticFit& fit, double low, double high, bool over_u, dou
         if (weight[bin] < 6) {
             continue;
         }
-        // Neighbouring points share their noise (about twenty to one independent value), so means are that much rougher.
-        const double allowed = std::max(0.3 * noise, 3 * noise * std::sqrt(20 / weight[bin]));
+        const double allowed = std::max(0.3 * noise, 3 * noise * std::sqrt(correlation / weight[bin]));
         const double ratio = std::abs(sum[bin] / weight[bin]) / allowed;
         if (ratio > result.worst) {
             result = {ratio, bin == 0};
         }
     }
     return result;
-}
-
-// How much larger the variance of the fit is than for independent noise: variance of sums over blocks of five spacings
-// against the number of points in them.
-double correlation_inflation(const QuadraticFit& fit, const SectionWindow& w, double spacing) {
-    const double block = 5 * spacing;
-    const int nu = static_cast<int>(w.away / block) + 1, ns = static_cast<int>(2 * w.along / block) + 1;
-    std::vector<double> sum(static_cast<std::size_t>(nu * ns), 0), squares(sum.size(), 0);
-    for (std::size_t i = 0; i < fit.size(); ++i) {
-        const int a = std::min(nu - 1, static_cast<int>(fit.u(i) * w.away / block));
-        const int b = std::min(ns - 1, static_cast<int>((fit.s(i) + 1) * w.along / block));
-        const double r = fit.weight(i) * fit.residual(i);
-        sum[static_cast<std::size_t>(a * ns + b)] += r;
-        squares[static_cast<std::size_t>(a * ns + b)] += r * r;
-    }
-    double between = 0, within = 0, blocks = 0;
-    for (std::size_t k = 0; k < sum.size(); ++k) {
-        between += sum[k] * sum[k];
-        within += squares[k];
-        blocks += squares[k] > 0;
-    }
-    if (within <= 0 || blocks < 8) {
-        return 1;
-    }
-    return std::max(1.0, between / within * blocks / (blocks - 6));
 }
 
 std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& widest) {
@@ -144,7 +142,8 @@ std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanSca
         if (flank.fit.size() < kLeastPoints || !flank.fit.solve(0.3 * noise)) {
             return std::nullopt;
         }
-        const Misfit across = misfit(flank.fit, w.band / w.away, 1, true, noise), along = misfit(flank.fit, -1, 1, false, noise);
+        const Misfit across = misfit(flank.fit, w.band / w.away, 1, true, noise, scale.correlation);
+        const Misfit along = misfit(flank.fit, -1, 1, false, noise, scale.correlation);
         const bool rough = flank.fit.scale() > 1.6 * noise;
         const bool can_away = kShrink * w.away >= w.band + least_away, can_along = kShrink * w.along >= least_along;
         if ((across.worst <= 1 && along.worst <= 1 && !rough) || (!can_away && !can_along)) {
@@ -173,20 +172,26 @@ void finish_flank(Flank& flank, const ScanScale& scale, double u) {
     flank.slope_along = (c[2] + c[4] * x) / w.along;
     const auto row = QuadraticFit::row(x, 0);
     const double variance = row.dot(flank.fit.cofactors() * row) * flank.fit.scale() * flank.fit.scale();
-    flank.sigma = std::sqrt(variance * correlation_inflation(flank.fit, w, scale.spacing));
+    // Thinned by lot, noise that neighbours shared is less of a share of what is left.
+    flank.sigma = std::sqrt(variance * (1 + flank.share * (scale.correlation - 1)));
     const double slab = std::max(2.5 * scale.spacing, w.along / 8) / w.along;
     double count = 0;
     for (std::size_t i = 0; i < flank.fit.size(); ++i) {
         count += std::abs(flank.fit.s(i)) <= slab && flank.fit.weight(i) > 0;
     }
-    flank.slab_points = count / (2 * slab * w.along) / (w.away - w.band);
+    flank.slab_points = count / flank.share / (2 * slab * w.along) / (w.away - w.band);
 }
 
 }  // namespace
 
-SectionWindow default_window(const ScanScale& scale) {
+SectionWindow following_window(const ScanScale& scale) {
     const double away = std::max(30 * scale.spacing, 25 * scale.noise);
     return {0.7 * away, away, std::max(4 * scale.spacing, 4 * scale.noise)};
+}
+
+SectionWindow measuring_window(const ScanScale& scale) {
+    const SectionWindow follow = following_window(scale);
+    return {2.4 * follow.along, 1.7 * follow.away, follow.band};
 }
 
 std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess, const SectionWindow& window) {
@@ -195,14 +200,16 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
         return std::nullopt;
     }
     const Frame& f = *frame;
-    const auto samples = gather(grid, scale, f, window);
+    auto samples = gather(grid, scale, f, window);
     SectionFit result;
     for (int k = 0; k < 2; ++k) {
+        const double share = thin_out(samples[static_cast<std::size_t>(k)]);
         auto flank = fit_flank(samples[static_cast<std::size_t>(k)], scale, window);
         if (!flank) {
             return std::nullopt;
         }
         result.flank[k] = std::move(*flank);
+        result.flank[k].share = share;
     }
     // Newton's method in the section plane on u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2.
     Eigen::Vector2d u(0, 0);

@@ -28,8 +28,12 @@ struct SectionWindow {
     double band = 0;
 };
 
-/// Window that a scan of this scale asks for: wide enough that noise averages out, and no wider.
-SectionWindow default_window(const ScanScale& scale);
+/// Window to follow a seam with: small enough for bends, wide enough to see two surfaces through the noise.
+SectionWindow following_window(const ScanScale& scale);
+
+/// Window to measure with. Noise of scanners is correlated, so means over small patches hardly improve on a single point;
+/// fits shrink it where the surface is not quadratic that far.
+SectionWindow measuring_window(const ScanScale& scale);
 
 /// One fitted flank: z(u, s) over u = distance from the seam, s = along it, z = along the normal of the section it was
 /// fitted in; u and s divided by the window's size.
@@ -40,7 +44,8 @@ struct Flank {
     double slope = 0;              ///< dz/du there
     double slope_along = 0;        ///< dz/ds there
     double sigma = 0;              ///< 1-sigma of height, mm
-    double slab_points = 0;        ///< inliers per mm of seam within a tenth of the window on both sides of the section
+    double share = 1;              ///< of the points in the window that took part
+    double slab_points = 0;        ///< points per mm^2 of the flank right at the section
 };
 
 struct SectionFit {

@@ -84,7 +84,7 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     if (scale.spacing <= 0) {
         throw InputError("validate: the scan has " + std::to_string(scan.points.size()) + " points; surfaces were needed; use the scan that the seam came from");
     }
-    const SectionWindow window = default_window(scale);
+    const SectionWindow window = measuring_window(scale);
     const ArcLength arc(model.curve);
     const PointGrid grid = grid_near(scan, arc, 1.3 * window.away);
     const auto count = std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
