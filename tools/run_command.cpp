@@ -141,6 +141,7 @@ void print_summary(const std::vector<Part>& all) {
 
 int run_several(std::vector<Part>& all, const Arguments& given, const Config& config) {
     const RunFolder folder(given.out);
+    folder.remove("summary.json");  // of an earlier run
     int worst = kPass;
     for (auto& part : all) {
         part.status = guarded([&] { return run_one(part, given, config); }, part.name + ": ");
