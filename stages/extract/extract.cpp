@@ -107,8 +107,6 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
 
     const SectionWindow window = following_window(scale);
     const Tracker tracker{grid, scale, window, options.station_mm > 0 ? options.station_mm : grid.cell()};
-    Tracker measuring = tracker;
-    measuring.window = measuring_window(scale);
     const double least_length = options.min_length_mm > 0 ? options.min_length_mm : kLeastLength * scale.spacing;
     for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
         const double length = length_of(track);
@@ -116,7 +114,11 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
             result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least_length, 1) + " mm");
             continue;
         }
-        result.seams.push_back(measure_track(measuring, track, scan.origin_mm));
+        if (auto seam = measure_track(tracker, track, scan.origin_mm)) {
+            result.seams.push_back(std::move(*seam));
+        } else {
+            result.remarks.push_back("a crease of " + fixed(length, 1) + " mm was left out: its flanks are too narrow or too rough for a joint");
+        }
     }
     std::stable_sort(result.seams.begin(), result.seams.end(), [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
     return result;

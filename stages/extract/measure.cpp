@@ -109,11 +109,11 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     }
     const TrackPoint inner = way[way.size() - 1 - kInside];
     const double direction = front ? -1 : 1;
-    const double look = 3 * static_cast<double>(kInside) * tracker.step;
+    const double look = 3 * static_cast<double>(kInside) * tracker.step + tracker.window.along;
     // A point distance short of the edge: no torch should be sent over it.
     const double reach = reach_ahead(tracker, inner, direction, look) - tracker.scale.spacing;
     const auto ahead = [&](const TrackPoint& p) { return direction * (p.section.p - inner.section.p).dot(inner.t); };
-    if (reach + tracker.scale.spacing >= look) {
+    if (reach + tracker.scale.spacing >= look || reach > ahead(way.back()) + 10 * tracker.step) {
         // The flanks go on: following ended for another reason, and that reason stands.
         if (front) {
             std::reverse(way.begin(), way.end());
@@ -139,7 +139,8 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
 }
 
 // Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
-std::vector<std::optional<TrackPoint>> measure_places(const Tracker& tracker, const std::vector<TrackPoint>& places) {
+std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, const Tracker& tracker,
+                                                     const std::vector<TrackPoint>& places) {
     std::vector<double> support[2];
     for (const TrackPoint& place : places) {
         if (!place.modelled) {
@@ -149,14 +150,17 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& tracker, co
     }
     const double least[2] = {0.1 * quantile(support[0], 0.5), 0.1 * quantile(support[1], 0.5)};
     std::vector<std::optional<TrackPoint>> measured(places.size());
+    const auto good = [&](const std::optional<TrackPoint>& point, const TrackPoint& place) {
+        return point && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale.noise &&
+               (!place.modelled || (point->support[0] >= least[0] && point->support[1] >= least[1]));
+    };
     parallel_for(places.size(), 4, [&](std::size_t i) {
-        auto point = tracker.measure(places[i].section, 3);
-        const bool seen = point && (point->section.p - places[i].section.p).norm() < tracker.step;
-        const bool supported = seen && point->support[0] >= least[0] && point->support[1] >= least[1];
-        if (places[i].modelled ? supported : seen) {
-            measured[i] = std::move(point);
-        } else if (places[i].modelled) {
-            measured[i] = places[i];
+        measured[i] = tracker.measure(places[i].section, 3);
+        if (!good(measured[i], places[i])) {
+            measured[i] = following.measure(places[i].section, 3);      // a narrow place: what followed it can measure it
+        }
+        if (!good(measured[i], places[i])) {
+            measured[i] = places[i].modelled ? std::optional(places[i]) : std::nullopt;
         }
     });
     return measured;
@@ -181,10 +185,35 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
     return way;
 }
 
+// A joint has two smooth flanks wider than its own corner, and lies where its points say. Noise, facets and layers of a badly
+// fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they are sure of.
+bool is_joint(const ScanScale& scale, const std::vector<TrackPoint>& way, std::size_t places) {
+    constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6;
+    std::vector<double> away, rough, jump, sigma;
+    for (std::size_t i = 1; i + 1 < way.size(); ++i) {
+        if (!way[i].modelled) {
+            // Across the seam only: places may lie closer or further apart along it.
+            const Eigen::Vector3d d = way[i - 1].section.p - 2 * way[i].section.p + way[i + 1].section.p;
+            jump.push_back((d - d.dot(way[i].t) * way[i].t).norm());
+            away.push_back(way[i].away);
+            rough.push_back(way[i].rough);
+            sigma.push_back(way[i].sigma);
+        }
+    }
+    return way.size() >= 6 && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth * scale.spacing &&
+           quantile(rough, 0.5) <= kMostRough * scale.noise && quantile(jump, 0.5) <= kMostJump * quantile(sigma, 0.5);
+}
+
 }  // namespace
 
-Seam measure_track(const Tracker& tracker, const Track& track, const Eigen::Vector3d& origin) {
-    std::vector<TrackPoint> way = without_outliers(measure_places(tracker, equal_steps(track, tracker.step)));
+std::optional<Seam> measure_track(const Tracker& following, const Track& track, const Eigen::Vector3d& origin) {
+    Tracker tracker = following;
+    tracker.window = measuring_window(following.scale);
+    const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
+    std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places));
+    if (!is_joint(tracker.scale, way, places.size())) {
+        return std::nullopt;
+    }
     if (!track.closed && way.size() > 8) {
         place_end(tracker, way, false);
         place_end(tracker, way, true);
@@ -196,7 +225,8 @@ Seam measure_track(const Tracker& tracker, const Track& track, const Eigen::Vect
         seam.points.push_back({origin + point.section.p, point.section.n1, point.section.n2, point.sigma, point.modelled});
         bend += point.bend;
     }
-    seam.confidence = way.empty() ? 0 : std::min(1.0, bend / static_cast<double>(way.size()) / 0.5);
+    // Half a radian between the flanks and nobody doubts that they are two.
+    seam.confidence = std::min(1.0, bend / static_cast<double>(way.size()) / 0.5);
     return seam;
 }
 

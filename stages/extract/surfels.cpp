@@ -1,7 +1,6 @@
 #include "stages/extract/surfels.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 
 #include <Eigen/Dense>
@@ -194,6 +193,60 @@ bool turn_outwards(Surfels& surfels, const PointGrid& grid, const std::vector<st
     return std::abs(votes[largest]) * 50 >= size[largest] / static_cast<int>(stride);
 }
 
+// The plane that holds most surfels: the plate that the part is, or the table that it lies on.
+struct MainPlane {
+    Eigen::Vector3d n{0, 0, 0};
+    double d = 0, share = 0;
+    bool holds(const Surfel& s, double reach) const { return std::abs(n.dot(s.p) - d) < reach && std::abs(n.dot(s.n)) > 0.9; }
+};
+
+MainPlane main_plane(const Surfels& surfels, double reach) {
+    constexpr std::size_t kCandidates = 120;
+    std::vector<MainPlane> planes(std::min(kCandidates, surfels.at.size()));
+    parallel_for(planes.size(), 4, [&](std::size_t k) {
+        const Surfel& s = surfels.at[(2 * k + 1) * surfels.at.size() / (2 * planes.size())];
+        MainPlane plane{s.n, s.n.dot(s.p), 0};
+        for (const Surfel& q : surfels.at) {
+            plane.share += plane.holds(q, reach);
+        }
+        plane.share /= static_cast<double>(surfels.at.size());
+        planes[k] = plane;
+    });
+    return *std::max_element(planes.begin(), planes.end(), [](const MainPlane& a, const MainPlane& b) { return a.share < b.share; });
+}
+
+// Where one plane is much of the scan and nearly all else lies on one side of it, that side is the air: parts stand on plates
+// and tables, and nothing is seen through them. Pieces without a share in the plane keep their turn.
+bool turn_to_side_of_main_plane(Surfels& surfels, const std::vector<std::uint32_t>& piece, double cell) {
+    constexpr double kMain = 0.25, kOneSide = 0.85;
+    MainPlane plane = main_plane(surfels, cell);
+    double above = 0, below = 0;
+    for (const Surfel& s : surfels.at) {
+        const double height = plane.n.dot(s.p) - plane.d;
+        above += height > 3 * cell;
+        below += height < -3 * cell;
+    }
+    if (plane.share < kMain || above + below == 0 || std::max(above, below) < kOneSide * (above + below)) {
+        return false;
+    }
+    if (below > above) {
+        plane.n = -plane.n;
+        plane.d = -plane.d;
+    }
+    std::vector<double> sum(surfels.at.size(), 0);
+    for (std::size_t i = 0; i < surfels.at.size(); ++i) {
+        if (plane.holds(surfels.at[i], cell)) {
+            sum[piece[i]] += surfels.at[i].n.dot(plane.n);
+        }
+    }
+    for (std::size_t i = 0; i < surfels.at.size(); ++i) {
+        if (sum[piece[i]] < 0) {
+            surfels.at[i].n = -surfels.at[i].n;
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 Surfels make_surfels(const PointGrid& grid, double radius) {
@@ -233,10 +286,17 @@ bool orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
         return true;
     }
     const std::vector<std::uint32_t> piece = make_consistent(surfels);
-    const bool evident = turn_outwards(surfels, grid, piece);
-    surfels.orientation_reason = evident ? "air side is the one to which the surfaces are open"
-                                         : "the scan is open to both sides; the air is taken to be where the joints are concave";
-    return evident;
+    const bool outwards = turn_outwards(surfels, grid, piece);
+    if (turn_to_side_of_main_plane(surfels, piece, grid.cell())) {
+        surfels.orientation_reason = "air side is the side of the main plane on which the rest of the scan lies";
+        return true;
+    }
+    if (outwards) {
+        surfels.orientation_reason = "air side is the one to which the surfaces are open";
+        return true;
+    }
+    surfels.orientation_reason = "the scan is open to both sides; the air is taken to be where the joints are concave";
+    return false;
 }
 
 }  // namespace seampath::detail

@@ -118,7 +118,7 @@ std::set<std::size_t> poor_spans(const Data& data, const std::vector<double>& re
     }
     std::set<std::size_t> poor;
     for (std::size_t span = 0; span + 1 < breaks.size(); ++span) {
-        if (count[span] >= 6 && std::sqrt(square[span] / count[span]) > limit) {
+        if (count[span] >= 4 && std::sqrt(square[span] / count[span]) > limit) {
             poor.insert(span);
         }
     }
@@ -127,7 +127,7 @@ std::set<std::size_t> poor_spans(const Data& data, const std::vector<double>& re
 
 // Every few nodes to begin with: a cubic follows a bend that takes several chords.
 std::vector<double> first_breaks(const std::vector<double>& u, const Nodes& nodes, bool closed) {
-    constexpr std::size_t kChordsPerSpan = 4;
+    constexpr std::size_t kChordsPerSpan = 3;
     std::vector<double> breaks{u.front()};
     const std::size_t inner = nodes.index.size();
     for (std::size_t k = kChordsPerSpan; k + kChordsPerSpan / 2 < inner; k += kChordsPerSpan) {

@@ -47,6 +47,9 @@ public:
     double scale() const { return scale_; }                                ///< robust 1-sigma of the residuals
     double weight(std::size_t i) const { return weight_[i]; }              ///< 0..1, 0 for outliers
     double residual(std::size_t i) const { return residual_[i]; }
+    double share_taken() const {                                            ///< of the points, with a weight above 0
+        return 1 - static_cast<double>(std::count(weight_.begin(), weight_.end(), 0.0)) / static_cast<double>(weight_.size());
+    }
     double value(double u, double s) const { return row(u, s).dot(c_); }
     /// Inverse of the weighted normal matrix: times scale^2 it is the covariance for uncorrelated noise.
     Normal cofactors() const { return normal_.ldlt().solve(Normal::Identity()); }

@@ -49,10 +49,43 @@ double neighbour_distance(const PointGrid& grid, const Eigen::Vector3d& p, doubl
 // A quadric over the best-fit plane of a ball.
 struct Patch {
     bool valid = false;
-    double scale = 0;      // robust 1-sigma of the residuals
-    double between = 0;    // squares of sums over blocks of 0.36 radii, added up
-    double within = 0;     // squares of the same residuals, added up
+    double scale = 0;          // robust 1-sigma of the residuals
+    double correlation = 0;    // variance of block means over that of means of independent residuals; 0: too few blocks
 };
+
+// From second differences of the means of neighbouring blocks: they do not see trends, so that a surface that is not quite
+// quadratic does not pass for correlated noise.
+double block_correlation(const QuadraticFit& fit) {
+    constexpr std::size_t kBlocks = 7;      // across the ball: wider than the correlation reaches, enough to average
+    constexpr double kLeast = 5;            // residuals in a block
+    std::array<std::array<double, kBlocks>, kBlocks> sum{}, count{};
+    double within = 0, taken = 0;
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        if (fit.weight(i) > 0) {
+            const auto column = [](double x) { return static_cast<std::size_t>(std::clamp((x + 1) / 2 * kBlocks, 0.0, kBlocks - 0.5)); };
+            sum[column(fit.u(i))][column(fit.s(i))] += fit.residual(i);
+            count[column(fit.u(i))][column(fit.s(i))] += 1;
+            within += fit.residual(i) * fit.residual(i);
+            taken += 1;
+        }
+    }
+    double found = 0, independent = 0;
+    const auto add = [&](std::size_t a, std::size_t b, std::size_t da, std::size_t db) {
+        const double n[3] = {count[a][b], count[a + da][b + db], count[a + 2 * da][b + 2 * db]};
+        if (std::min({n[0], n[1], n[2]}) >= kLeast) {
+            const double difference = sum[a][b] / n[0] - 2 * sum[a + da][b + db] / n[1] + sum[a + 2 * da][b + 2 * db] / n[2];
+            found += difference * difference;
+            independent += within / taken * (1 / n[0] + 4 / n[1] + 1 / n[2]);
+        }
+    };
+    for (std::size_t a = 0; a < kBlocks; ++a) {
+        for (std::size_t b = 0; b + 2 < kBlocks; ++b) {
+            add(a, b, 0, 1);
+            add(b, a, 1, 0);
+        }
+    }
+    return independent > 0 ? found / independent : 0;
+}
 
 Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) {
     std::vector<Eigen::Vector3d> q;
@@ -79,24 +112,7 @@ Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) 
     if (!fit.solve(0)) {
         return {};
     }
-    Patch patch{true, fit.scale(), 0, 0};
-    constexpr int kBlocks = 6;      // across the ball: wide enough to hold the range of the correlation, enough to average
-    std::array<double, static_cast<std::size_t>(kBlocks* kBlocks)> sum{};
-    double blocks = 0;
-    for (std::size_t i = 0; i < fit.size(); ++i) {
-        const auto column = [](double x) { return std::clamp(static_cast<int>((x + 1) / 2 * kBlocks), 0, kBlocks - 1); };
-        const double r = fit.weight(i) > 0 ? fit.residual(i) : 0;
-        double& block = sum[static_cast<std::size_t>(column(fit.u(i)) * kBlocks + column(fit.s(i)))];
-        blocks += block == 0 && r != 0;
-        block += r;
-        patch.within += r * r;
-    }
-    for (const double s : sum) {
-        patch.between += s * s;
-    }
-    // Six coefficients took their share of what the blocks have in common.
-    patch.between *= blocks > 12 ? blocks / (blocks - 6) : 0;
-    return patch;
+    return {true, fit.scale(), block_correlation(fit)};
 }
 
 std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places, double radius) {
@@ -150,20 +166,18 @@ ScanScale estimate_scale(std::span<const Eigen::Vector3f> points) {
     }
     const std::vector<Patch> wide = fit_patches(grid, fewer, 4.5 * radius);
     const double smooth = 1.3 * typical_scale(wide);
-    std::vector<double> smooth_scales;
-    double between = 0, within = 0;
+    std::vector<double> scales, correlations;
     for (const Patch& patch : wide) {
-        if (patch.scale <= smooth) {
-            smooth_scales.push_back(patch.scale);
-            between += patch.between;
-            within += patch.within;
+        if (patch.scale <= smooth && patch.correlation > 0) {
+            scales.push_back(patch.scale);
+            correlations.push_back(patch.correlation);
         }
     }
     // On a part with no smooth place of that size the smaller balls have to do.
-    const double wide_noise = quantile(smooth_scales, 0.5);
-    if (within > 0 && wide_noise < 2 * scale.noise) {
+    const double wide_noise = quantile(scales, 0.5);
+    if (!scales.empty() && wide_noise < 2 * scale.noise) {
         scale.noise = std::max(scale.noise, wide_noise);
-        scale.correlation = std::clamp(between / within, 1.0, 60.0);
+        scale.correlation = std::clamp(quantile(correlations, 0.5), 1.0, 60.0);
     }
     return scale;
 }

@@ -15,8 +15,9 @@ constexpr double kGateSlope = 20 * std::numbers::pi / 180;
 constexpr double kShrink = 0.7;
 constexpr double kGrow = 1.5;
 constexpr double kContinuation = 0.15;        // slope by which a surface may leave the continuation of its inner part
+constexpr double kMostTaken = 0.85;           // share of a window's points that a fit must explain to be taken at once
 constexpr double kRough = 1.6;                // residual scale, in noises, beyond which the surface is not quadratic
-constexpr double kPointsAcross = 10;          // of the smallest window, in point distances
+constexpr double kPointsAcross = 12;          // of the smallest window, in point distances
 constexpr double kNoiseWidths = 15;           // of the smallest window, in noises: its slope is then known to a few degrees
 constexpr double kBandWidths = 4;
 constexpr int kBins = 5;
@@ -206,9 +207,41 @@ std::optional<Flank> begin_flank(const std::vector<Sample>& samples, const ScanS
     return flank;
 }
 
-// Widens the window, across and along in turn, as long as one quadratic explains what it holds.
-std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& limit) {
+// How far a surface of curvature 2 |c| / extent^2 is still a parabola: the circle's next term, k^3 x^4 / 8, is to stay below
+// a third of the noise. Only curvature that the fit is sure of counts.
+double parabola_reach(double c, double sigma, double extent, double noise) {
+    const double k = 2 * std::max(0.0, std::abs(c) - 2 * sigma) / (extent * extent);
+    return k > 0 ? std::pow(8 * 0.3 * noise / (k * k * k), 0.25) : std::numeric_limits<double>::infinity();
+}
+
+SectionWindow within_parabola(const Flank& flank, const SectionWindow& limit, double noise, double correlation) {
+    const QuadraticFit::Normal cofactors = flank.fit.cofactors();
+    const double unit = flank.fit.scale() * std::sqrt(correlation);
+    const auto& c = flank.fit.coefficients();
+    const SectionWindow& w = flank.window;
+    return {std::min(limit.along, parabola_reach(c[5], unit * std::sqrt(cofactors(5, 5)), w.along, noise)),
+            std::min(limit.away, parabola_reach(c[3], unit * std::sqrt(cofactors(3, 3)), w.away, noise)), limit.band};
+}
+
+// The largest window within the limit in which one quadratic explains what it holds. Mostly the limit itself does; else the
+// window grows from the smallest, across and along in turn: where it ends, the surface ends or turns.
+std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, SectionWindow limit) {
     const double noise = std::max(scale.noise, 0.02 * scale.spacing);
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        Flank whole;
+        whole.window = limit;
+        auto fit = fit_window(samples, limit, noise, nullptr);
+        if (!fit || !quality_of(*fit, limit, noise, scale.correlation).good() || fit->share_taken() < kMostTaken) {
+            break;
+        }
+        whole.fit = std::move(*fit);
+        const SectionWindow reach = within_parabola(whole, limit, noise, scale.correlation);
+        if (attempt == 1 || (reach.away >= 0.9 * limit.away && reach.along >= 0.9 * limit.along)) {
+            return whole;
+        }
+        limit.away = std::max(reach.away, std::min(limit.away, smallest_window(scale).away));
+        limit.along = std::max(reach.along, std::min(limit.along, smallest_window(scale).along));
+    }
     auto flank = begin_flank(samples, scale, noise, limit);
     if (!flank) {
         return std::nullopt;
@@ -222,7 +255,11 @@ std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanSca
                 continue;
             }
             SectionWindow w = flank->window;
-            w.*extent = std::min(limit.*extent, w.*extent * kGrow);
+            w.*extent = std::min({limit.*extent, w.*extent * kGrow, within_parabola(*flank, limit, noise, scale.correlation).*extent});
+            if (w.*extent < 1.1 * flank->window.*extent) {
+                open = false;
+                continue;
+            }
             auto fit = fit_window(samples, w, noise, &*flank);
             const Quality q = fit ? quality_of(*fit, w, noise, scale.correlation) : Quality{2, 2, false, true};
             if (q.good()) {
@@ -259,7 +296,7 @@ void finish_flank(Flank& flank, const ScanScale& scale, double u) {
 
 SectionWindow following_window(const ScanScale& scale) {
     const SectionWindow least = smallest_window(scale);
-    const double wider = std::clamp(std::sqrt(scale.correlation), 1.2, 3.0);
+    const double wider = std::clamp(std::sqrt(scale.correlation), 2.2, 3.0);
     return {wider * least.along, wider * least.away, least.band};
 }
 

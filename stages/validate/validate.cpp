@@ -16,6 +16,7 @@ namespace {
 constexpr double kNoiseTolerance = 3;        // tolerance by default, in sigmas of a single scan point
 constexpr double kLeastTolerance = 0.1;      // mm; tracking accuracy that arc welding asks of a path
 constexpr double kGuard = 2;                 // sigmas of the measurement taken off the tolerance (ISO 14253-1)
+constexpr double kMostSigma = 3;             // of the seam's usual sigma; a weaker fit says nothing about the model
 constexpr double kLeastDensity = 0.1;        // of the seam's usual density of flank points
 
 // Only scan points near the curve matter: those in cells of the window's size that the curve comes near to.
@@ -110,6 +111,16 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
             density[1][i] = fit->flank[1].slab_points;
         }
     });
+    std::vector<double> sigma;
+    for (const DeviationSample& sample : result.samples) {
+        if (sample.covered) {
+            sigma.push_back(sample.sigma_mm);
+        }
+    }
+    const double most_sigma = kMostSigma * quantile(sigma, 0.5);
+    for (DeviationSample& sample : result.samples) {
+        sample.covered = sample.covered && sample.sigma_mm <= most_sigma;
+    }
     for (const std::vector<double>& d : density) {
         std::vector<double> sorted = d;
         const double least = kLeastDensity * quantile(sorted, 0.5);
