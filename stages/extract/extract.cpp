@@ -20,9 +20,13 @@ namespace {
 using namespace detail;
 
 constexpr std::size_t kLeastPoints = 200;
+constexpr double kLeastLength = 16;      // of a seam, in point distances
 
-// The scan's own scale sets the size of the cells: some twenty points each, and quieter than the noise.
-double cell_size(const ScanScale& scale) { return std::max(4 * scale.spacing, 3 * scale.noise); }
+// As fine as the points allow, so that narrow faces are seen; coarser where a large scan would make too many cells.
+double cell_size(const ScanScale& scale, std::size_t points) {
+    constexpr double kCells = 60000;
+    return std::max(std::clamp(std::sqrt(static_cast<double>(points) / kCells), 2.5, 4.0) * scale.spacing, 2 * scale.noise);
+}
 
 // Concave creases, heaviest first. Where nothing told the air from the material, the joints do: a scan made to find a seam
 // shows more of concave joints than of convex edges.
@@ -95,7 +99,7 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     if (scale.spacing <= 0) {
         throw InputError("extract: all points lie in one place; a part with surfaces was needed; check the file");
     }
-    const PointGrid grid(scan.points, cell_size(scale));
+    const PointGrid grid(scan.points, cell_size(scale, scan.points.size()));
     Surfels surfels = make_surfels(grid, 4.5 * grid.cell());
     const bool oriented = orient(surfels, grid, scan);
     result.orientation_reason = surfels.orientation_reason;
@@ -105,7 +109,7 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     const Tracker tracker{grid, scale, window, options.station_mm > 0 ? options.station_mm : grid.cell()};
     Tracker measuring = tracker;
     measuring.window = measuring_window(scale);
-    const double least_length = options.min_length_mm > 0 ? options.min_length_mm : 2 * window.away;
+    const double least_length = options.min_length_mm > 0 ? options.min_length_mm : kLeastLength * scale.spacing;
     for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
         const double length = length_of(track);
         if (length < least_length) {

@@ -12,7 +12,13 @@ namespace seampath {
 namespace {
 
 constexpr double kGateSlope = 20 * std::numbers::pi / 180;
-constexpr double kShrink = 0.75;
+constexpr double kShrink = 0.7;
+constexpr double kGrow = 1.5;
+constexpr double kContinuation = 0.15;        // slope by which a surface may leave the continuation of its inner part
+constexpr double kRough = 1.6;                // residual scale, in noises, beyond which the surface is not quadratic
+constexpr double kPointsAcross = 10;          // of the smallest window, in point distances
+constexpr double kNoiseWidths = 15;           // of the smallest window, in noises: its slope is then known to a few degrees
+constexpr double kBandWidths = 4;
 constexpr int kBins = 5;
 constexpr std::size_t kLeastPoints = 24;
 
@@ -126,38 +132,105 @@ Misfit misfit(const QuadraticFit& fit, double low, double high, bool over_u, dou
     return result;
 }
 
-std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& widest) {
-    Flank flank;
-    flank.window = widest;
-    const double noise = std::max(scale.noise, 0.02 * scale.spacing);
-    const double least_away = 6 * scale.spacing, least_along = 3 * scale.spacing;
-    while (true) {
-        SectionWindow& w = flank.window;
-        flank.fit.begin(samples.size());
-        for (const Sample& x : samples) {
-            if (x.u >= w.band && x.u <= w.away && std::abs(x.s) <= w.along) {
-                flank.fit.add(x.u / w.away, x.s / w.along, x.z);
+// Some hundred and fifty points, and a slope known to a few degrees.
+SectionWindow smallest_window(const ScanScale& scale) {
+    const double away = std::max(kPointsAcross * scale.spacing, kNoiseWidths * scale.noise);
+    return {0.7 * away, away, std::max(kBandWidths * scale.spacing, kBandWidths * scale.noise)};
+}
+
+// Fits the samples of one window. `inner`, when given, is the fit of a smaller window: what lies off its continuation belongs
+// to something else, a step, an edge, another wall.
+std::optional<QuadraticFit> fit_window(const std::vector<Sample>& samples, const SectionWindow& w, double noise, const Flank* inner) {
+    QuadraticFit fit;
+    fit.begin(samples.size());
+    for (const Sample& x : samples) {
+        if (x.u < w.band || x.u > w.away || std::abs(x.s) > w.along) {
+            continue;
+        }
+        if (inner) {
+            const double beyond = std::max({0.0, x.u - inner->window.away, std::abs(x.s) - inner->window.along});
+            const double z = inner->fit.value(x.u / inner->window.away, x.s / inner->window.along);
+            if (std::abs(x.z - z) > 4 * noise + kContinuation * beyond) {
+                continue;
             }
         }
-        if (flank.fit.size() < kLeastPoints || !flank.fit.solve(0.3 * noise)) {
-            return std::nullopt;
-        }
-        const Misfit across = misfit(flank.fit, w.band / w.away, 1, true, noise, scale.correlation);
-        const Misfit along = misfit(flank.fit, -1, 1, false, noise, scale.correlation);
-        const bool rough = flank.fit.scale() > 1.6 * noise;
-        const bool can_away = kShrink * w.away >= w.band + least_away, can_along = kShrink * w.along >= least_along;
-        if ((across.worst <= 1 && along.worst <= 1 && !rough) || (!can_away && !can_along)) {
+        fit.add(x.u / w.away, x.s / w.along, x.z);
+    }
+    if (fit.size() < kLeastPoints || !fit.solve(0.3 * noise)) {
+        return std::nullopt;
+    }
+    return fit;
+}
+
+struct Quality {
+    double across = 0, along = 0;      // worst misfit over bins, 1 is what noise allows
+    bool at_band = false;              // the worst across is at the seam's side
+    bool rough = false;
+    bool good() const { return across <= 1 && along <= 1 && !rough; }
+};
+
+Quality quality_of(const QuadraticFit& fit, const SectionWindow& w, double noise, double correlation) {
+    const Misfit across = misfit(fit, w.band / w.away, 1, true, noise, correlation), along = misfit(fit, -1, 1, false, noise, correlation);
+    return {across.worst, along.worst, across.at_low_end, fit.scale() > kRough * noise};
+}
+
+// Smallest window that carries a fit; the surface may be too bent even for the one it begins with.
+std::optional<Flank> begin_flank(const std::vector<Sample>& samples, const ScanScale& scale, double noise, const SectionWindow& limit) {
+    Flank flank;
+    const SectionWindow start = smallest_window(scale);
+    flank.window = {std::min(limit.along, start.along), std::min(limit.away, start.away), limit.band};
+    auto fit = fit_window(samples, flank.window, noise, nullptr);
+    while (!fit && flank.window.away < limit.away) {
+        flank.window.away = std::min(limit.away, flank.window.away / kShrink);
+        flank.window.along = std::min(limit.along, flank.window.along / kShrink);
+        fit = fit_window(samples, flank.window, noise, nullptr);
+    }
+    if (!fit) {
+        return std::nullopt;
+    }
+    flank.fit = std::move(*fit);
+    for (int shrinks = 0; shrinks < 4; ++shrinks) {
+        const Quality q = quality_of(flank.fit, flank.window, noise, scale.correlation);
+        if (q.good()) {
             break;
         }
-        if (across.worst >= along.worst && across.at_low_end && w.band < 0.25 * w.away && w.band < 3 * widest.band) {
-            w.band *= 1.5;      // the corner itself reaches further than its band
-        } else if ((across.worst >= along.worst && can_away) || !can_along) {
-            w.away *= kShrink;
-        } else {
-            w.along *= kShrink;
-        }
-        if (w.away < w.band + 0.5 * least_away) {
+        SectionWindow w = flank.window;
+        (q.along > q.across ? w.along : w.away) *= kShrink;
+        fit = w.away > w.band + 3 * scale.spacing && w.along > 2 * scale.spacing ? fit_window(samples, w, noise, nullptr) : std::nullopt;
+        if (!fit) {
             break;
+        }
+        flank.window = w;
+        flank.fit = std::move(*fit);
+    }
+    return flank;
+}
+
+// Widens the window, across and along in turn, as long as one quadratic explains what it holds.
+std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& limit) {
+    const double noise = std::max(scale.noise, 0.02 * scale.spacing);
+    auto flank = begin_flank(samples, scale, noise, limit);
+    if (!flank) {
+        return std::nullopt;
+    }
+    bool across = true, along = true;
+    while ((across && flank->window.away < limit.away) || (along && flank->window.along < limit.along)) {
+        for (const bool widen_across : {true, false}) {
+            bool& open = widen_across ? across : along;
+            double SectionWindow::*const extent = widen_across ? &SectionWindow::away : &SectionWindow::along;
+            if (!open || flank->window.*extent >= limit.*extent) {
+                continue;
+            }
+            SectionWindow w = flank->window;
+            w.*extent = std::min(limit.*extent, w.*extent * kGrow);
+            auto fit = fit_window(samples, w, noise, &*flank);
+            const Quality q = fit ? quality_of(*fit, w, noise, scale.correlation) : Quality{2, 2, false, true};
+            if (q.good()) {
+                flank->window = w;
+                flank->fit = std::move(*fit);
+            } else {
+                open = false;
+            }
         }
     }
     return flank;
@@ -185,8 +258,9 @@ void finish_flank(Flank& flank, const ScanScale& scale, double u) {
 }  // namespace
 
 SectionWindow following_window(const ScanScale& scale) {
-    const double away = std::max(30 * scale.spacing, 25 * scale.noise);
-    return {0.7 * away, away, std::max(4 * scale.spacing, 4 * scale.noise)};
+    const SectionWindow least = smallest_window(scale);
+    const double wider = std::clamp(std::sqrt(scale.correlation), 1.2, 3.0);
+    return {wider * least.along, wider * least.away, least.band};
 }
 
 SectionWindow measuring_window(const ScanScale& scale) {
