@@ -1,0 +1,112 @@
+#include "stages/geometry/grid.hpp"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "datasets/rng.hpp"
+
+namespace seampath {
+namespace {
+
+std::vector<Eigen::Vector3f> random_points(std::size_t count, double extent) {
+    const Random random(5, 0);
+    std::vector<Eigen::Vector3f> points;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        points.push_back(
+            (extent * Eigen::Vector3d(random.uniform(3 * i), random.uniform(3 * i + 1), random.uniform(3 * i + 2)))
+                .cast<float>());
+    }
+    return points;
+}
+
+std::multiset<double> in_ball(const PointGrid& grid, const Eigen::Vector3d& p, double radius) {
+    std::multiset<double> distances;
+    grid.for_points_in_ball(p, radius, [&](const Eigen::Vector3f& q, double d2) {
+        EXPECT_DOUBLE_EQ(d2, (q.cast<double>() - p).squaredNorm());
+        distances.insert(d2);
+    });
+    return distances;
+}
+
+TEST(PointGrid, BallHoldsWhatBruteForceFinds) {
+    const auto points = random_points(5000, 20);
+    for (const double cell : {0.3, 2.0, 50.0}) {
+        const PointGrid grid(points, cell);
+        const Random random(6, 0);
+        for (std::uint64_t i = 0; i < 100; ++i) {
+            const Eigen::Vector3d p(random.uniform(4 * i, -3, 23), random.uniform(4 * i + 1, -3, 23),
+                                    random.uniform(4 * i + 2, -3, 23));
+            const double radius = random.uniform(4 * i + 3, 0, 6);
+            std::multiset<double> brute;
+            for (const auto& q : points) {
+                const double d2 = (q.cast<double>() - p).squaredNorm();
+                if (d2 <= radius * radius) {
+                    brute.insert(d2);
+                }
+            }
+            EXPECT_EQ(in_ball(grid, p, radius), brute) << "cell " << cell << ", place " << i;
+        }
+    }
+}
+
+TEST(PointGrid, HoldsEachKeptPointOnce) {
+    const auto points = random_points(1000, 20);
+    std::vector<std::uint8_t> keep(points.size());
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        keep[i] = i % 3 == 0;
+    }
+    const PointGrid grid(points, 1.5, keep);
+    std::set<std::uint32_t> sources;
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+        EXPECT_EQ(grid.all()[k], points[grid.source(k)]);
+        EXPECT_TRUE(keep[grid.source(k)]);
+        sources.insert(grid.source(k));
+    }
+    EXPECT_EQ(sources.size(), 334u);
+    EXPECT_EQ(grid.size(), 334u);
+}
+
+TEST(PointGrid, CellsFollowSpaceWhateverTheOrderOfThePoints) {
+    const auto points = random_points(2000, 20);
+    const std::vector<Eigen::Vector3f> reversed(points.rbegin(), points.rend());
+    const PointGrid a(points, 2), b(reversed, 2);
+    ASSERT_EQ(a.cells(), b.cells());
+    for (std::size_t c = 0; c < a.cells(); ++c) {
+        EXPECT_EQ(a.points(c).size(), b.points(c).size());
+        EXPECT_LT((a.mean(c) - b.mean(c)).norm(), 1e-12);
+    }
+}
+
+TEST(PointGrid, BoxOfCellsHoldsThePointsOfTheBox) {
+    const auto points = random_points(3000, 20);
+    const PointGrid grid(points, 1.1);
+    const Eigen::Vector3d low(3, 4, 5), high(9, 6, 17);
+    std::size_t inside = 0;
+    const auto is_inside = [&](const Eigen::Vector3f& q) {
+        const Eigen::Vector3d p = q.cast<double>();
+        return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+    };
+    grid.for_cells_in_box(low, high, [&](std::size_t cell) {
+        inside +=
+            static_cast<std::size_t>(std::count_if(grid.points(cell).begin(), grid.points(cell).end(), is_inside));
+    });
+    EXPECT_EQ(inside, static_cast<std::size_t>(std::count_if(points.begin(), points.end(), is_inside)));
+}
+
+TEST(PointGrid, StraysFarAwayNeitherOverflowNorHideTheirNeighbours) {
+    auto points = random_points(500, 20);
+    points.emplace_back(1e12f, -1e12f, 1e12f);
+    const PointGrid grid(points, 0.01);
+    EXPECT_EQ(in_ball(grid, {10, 10, 10}, 100).size(), 500u);
+    EXPECT_EQ(grid.size(), 501u);
+}
+
+TEST(PointGrid, OfNoPointsFindsNothing) {
+    const PointGrid grid(std::vector<Eigen::Vector3f>{}, 1);
+    EXPECT_EQ(grid.cells(), 0u);
+    EXPECT_TRUE(in_ball(grid, {0, 0, 0}, 10).empty());
+}
+
+}  // namespace
+}  // namespace seampath
