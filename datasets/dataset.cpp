@@ -49,9 +49,9 @@ Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, s
         const View view = take_view(made, scanner, seed, i, threads);
         for (const Eigen::Vector3d& p : view.points) {
             if (!std::isnan(p.x())) {
-                dataset.points.push_back((dataset.scan_from_scene * p).cast<float>());
+                dataset.points.emplace_back((dataset.scan_from_scene * p).cast<float>());
             } else if (scanner.organised) {
-                dataset.points.push_back(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+                dataset.points.emplace_back(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
             }
         }
         if (scanner.organised) {

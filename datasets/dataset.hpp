@@ -30,9 +30,10 @@ struct Dataset {
 Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, std::uint64_t seed,
                      unsigned threads = 0);
 
-/// Writes `scan.ply` (binary, x y z as 32-bit floats) and `truth.json` into the folder, which is made when it is
-/// missing. Throws InputError when a file can't be written.
-void write_dataset(const Dataset& dataset, const std::filesystem::path& folder);
+/// Writes the scan (`scan.ply`, or `scan.pcd` when it is organised; binary, x y z as 32-bit floats) and `truth.json`
+/// into the folder, which is made when it is missing. Returns the scan's path. Throws InputError when a file can't be
+/// written.
+std::filesystem::path write_dataset(const Dataset& dataset, const std::filesystem::path& folder);
 
 /// Throws InputError when the file is not a truth file.
 Truth read_truth(const std::filesystem::path& file);

@@ -1,13 +1,12 @@
 #include <array>
 #include <bit>
 #include <fstream>
-#include <span>
-#include <string_view>
-#include <type_traits>
 
 #include <nlohmann/json.hpp>
 
 #include "datasets/dataset.hpp"
+#include "pipeline/fields.hpp"
+#include "pipeline/files.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -21,26 +20,6 @@ constexpr std::array<std::pair<const char*, Member>, 4> kColumns{{{"points_mm", 
                                                                   {"tangents", &TruthPoint::tangent},
                                                                   {"n1", &TruthPoint::n1},
                                                                   {"n2", &TruthPoint::n2}}};
-
-ordered_json to_json(const Fields& fields) {
-    ordered_json object = ordered_json::object();
-    for (const Field& field : fields) {
-        const std::string key(field.key);
-        std::visit(
-            [&](const auto& value) {
-                using T = std::decay_t<decltype(value)>;
-                if constexpr (std::is_same_v<T, Choice>) {
-                    object[key] = value.names[static_cast<std::size_t>(value.get())];
-                } else if constexpr (std::is_same_v<T, std::optional<double>*>) {
-                    object[key] = *value ? ordered_json(**value) : ordered_json();
-                } else {
-                    object[key] = *value;
-                }
-            },
-            field.value);
-    }
-    return object;
-}
 
 ordered_json to_json(const TruthSeam& seam) {
     ordered_json object{{"closed", seam.closed}};
@@ -67,30 +46,10 @@ ordered_json to_json(const Dataset& dataset) {
     return {{"format", "seampath truth"},
             {"version", kTruthVersion},
             {"seed", dataset.seed},
-            {"scene", to_json(describe(scene))},
-            {"scanner", to_json(describe(scanner))},
+            {"scene", fields_json(describe(scene))},
+            {"scanner", fields_json(describe(scanner))},
             {"scan_from_scene", {{"xyz_mm", {t.x(), t.y(), t.z()}}, {"qwxyz", {q.w(), q.x(), q.y(), q.z()}}}},
             {"seams", std::move(seams)}};
-}
-
-/// Under another name first, so that a file of the right name is always whole.
-void write_file(const std::filesystem::path& file, std::span<const std::string_view> parts) {
-    std::filesystem::path unfinished = file;
-    unfinished += ".tmp";
-    std::ofstream out(unfinished, std::ios::binary);
-    for (const std::string_view part : parts) {
-        out.write(part.data(), static_cast<std::streamsize>(part.size()));
-    }
-    out.close();
-    std::error_code error;
-    if (out) {
-        std::filesystem::rename(unfinished, file, error);
-    }
-    if (!out || error) {
-        std::error_code ignored;
-        std::filesystem::remove(unfinished, ignored);
-        throw InputError("dataset: can't write " + file.string() + "; choose a folder that is writable and not full");
-    }
 }
 
 std::vector<TruthPoint> read_points(const ordered_json& seam) {
@@ -120,15 +79,16 @@ std::string pcd_header(const Dataset& dataset) {
 
 }  // namespace
 
-void write_dataset(const Dataset& dataset, const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
+std::filesystem::path write_dataset(const Dataset& dataset, const std::filesystem::path& folder) {
     static_assert(sizeof(Eigen::Vector3f) == 12 && std::endian::native == std::endian::little);
     const bool organised = dataset.width > 0;
-    const std::string header = organised ? pcd_header(dataset) : ply_header(dataset);
-    const std::string_view body(reinterpret_cast<const char*>(dataset.points.data()), dataset.points.size() * 12);
-    write_file(folder / (organised ? "scan.pcd" : "scan.ply"), std::array<std::string_view, 2>{header, body});
-    write_file(folder / "truth.json", std::array<std::string_view, 1>{to_json(dataset).dump() + "\n"});
+    std::string scan = organised ? pcd_header(dataset) : ply_header(dataset);
+    scan.append(reinterpret_cast<const char*>(dataset.points.data()), dataset.points.size() * sizeof(Eigen::Vector3f));
+    const char* const name = organised ? "scan.pcd" : "scan.ply";
+    const RunFolder files(folder);
+    files.write(name, scan);
+    files.write("truth.json", to_json(dataset).dump() + "\n");
+    return folder / name;
 }
 
 Truth read_truth(const std::filesystem::path& file) {

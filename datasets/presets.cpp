@@ -1,6 +1,7 @@
 #include <string>
 
 #include "datasets/scanner.hpp"
+#include "pipeline/text.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -137,16 +138,15 @@ Fields describe(ScannerOptions& o) {
 }
 
 ScannerOptions preset(std::string_view name) {
-    std::string known;
     for (std::size_t i = 0; i < kPresets.size(); ++i) {
         if (kPresetNames[i] == name) {
             ScannerOptions options;
             kPresets[i](options);
             return options;
         }
-        known += (i == 0 ? "" : ", ") + std::string(kPresetNames[i]);
     }
-    throw InputError("dataset: there is no preset \"" + std::string(name) + "\"; the presets are " + known);
+    throw InputError("dataset: there is no preset \"" + std::string(name) + "\"; the presets are " +
+                     join(kPresetNames) + hint(name, kPresetNames));
 }
 
 }  // namespace seampath

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/json_text.hpp"
-#include "pipeline/text.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -88,7 +88,7 @@ public:
     template <class T>
     static Json put(const T& value) {
         if constexpr (std::is_same_v<T, double>) {
-            return std::isfinite(value) ? Json(value) : Json(std::isnan(value) ? "nan" : number_text(value));
+            return std::isfinite(value) ? Json(value) : Json(std::isnan(value) ? "nan" : shortest(value));
         } else if constexpr (std::is_same_v<T, JointKind> || std::is_same_v<T, WaypointKind>) {
             return name(value);
         } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {

@@ -231,10 +231,7 @@ std::string config_json(const Config& config) {
     Config copy = config;
     Json root = Json::object();
     for (const auto& section : describe(copy)) {
-        Json& options = root[std::string(section.stage)] = Json::object();
-        for (const auto& field : section.fields) {
-            options[std::string(field.key)] = field_json(field);
-        }
+        root[std::string(section.stage)] = fields_json(section.fields);
     }
     return root.dump(4) + "\n";
 }
@@ -243,19 +240,9 @@ std::string options_json(const Config& config, std::string_view stage) {
     return parse_json(config_json(config)).at(std::string(stage)).dump();
 }
 
-std::string options_table(std::string_view stage) {
-    Config config;
-    const auto sections = describe(config);
-    if (!stage.empty() && find_section(sections, stage) == nullptr) {
-        const auto names = stage_names(sections);
-        throw InputError("options: \"" + std::string(stage) + "\" is no stage; there are " + join(names) +
-                         hint(stage, names));
-    }
+std::string options_table(const std::vector<Section>& sections) {
     std::string table;
     for (const auto& section : sections) {
-        if (!stage.empty() && section.stage != stage) {
-            continue;
-        }
         std::vector<std::vector<std::string>> rows{{"key", "unit", "default", "values", "meaning"}};
         for (const auto& field : section.fields) {
             rows.push_back({std::string(section.stage) + "." + std::string(field.key), std::string(unit_of(field.key)),
@@ -265,6 +252,21 @@ std::string options_table(std::string_view stage) {
         table += aligned(rows);
     }
     return table;
+}
+
+std::string options_table(std::string_view stage) {
+    Config config;
+    const auto sections = describe(config);
+    if (stage.empty()) {
+        return options_table(sections);
+    }
+    const Section* section = find_section(sections, stage);
+    if (section == nullptr) {
+        const auto names = stage_names(sections);
+        throw InputError("options: \"" + std::string(stage) + "\" is no stage; there are " + join(names) +
+                         hint(stage, names));
+    }
+    return options_table(std::vector<Section>{*section});
 }
 
 std::string config_schema() {

@@ -64,7 +64,10 @@ std::string config_json(const Config& config);
 /// The same for the options of one stage, on one line: what the stage's result depends on.
 std::string options_json(const Config& config, std::string_view stage);
 
-/// Every option of one stage, or of all when `stage` is empty: key, unit, default, bounds, meaning.
+/// Every option of these sections as a table: key, unit, value, bounds, meaning.
+std::string options_table(const std::vector<Section>& sections);
+
+/// The same for one stage of the config, or for all when `stage` is empty, with the defaults as values.
 /// Throws InputError for an unknown stage.
 std::string options_table(std::string_view stage = {});
 

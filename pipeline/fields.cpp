@@ -8,6 +8,7 @@
 #include "pipeline/json_text.hpp"
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -26,15 +27,15 @@ std::string bounds_problem(double value, const Bounds& bounds) {
     if (!too_low && value <= bounds.high) {
         return {};
     }
-    const std::string text = number_text(value);
+    const std::string text = shortest(value);
     if (!std::isfinite(bounds.high)) {
-        return text + (bounds.low_open ? " is not above " : " is not at least ") + number_text(bounds.low);
+        return text + (bounds.low_open ? " is not above " : " is not at least ") + shortest(bounds.low);
     }
     if (!std::isfinite(bounds.low)) {
-        return text + " is not at most " + number_text(bounds.high);
+        return text + " is not at most " + shortest(bounds.high);
     }
-    return text + (bounds.low_open ? " is not above " : " is not between ") + number_text(bounds.low) +
-           (bounds.low_open ? " and at most " : " and ") + number_text(bounds.high);
+    return text + (bounds.low_open ? " is not above " : " is not between ") + shortest(bounds.low) +
+           (bounds.low_open ? " and at most " : " and ") + shortest(bounds.high);
 }
 
 std::string assign_number(double& target, const Json& value, const Bounds& bounds) {
@@ -113,12 +114,12 @@ Json number_schema(const Json& type, const Bounds& bounds) {
 std::string bounds_text(const Bounds& bounds) {
     const bool low = std::isfinite(bounds.low);
     if (low && std::isfinite(bounds.high)) {
-        return (bounds.low_open ? "> " : "") + number_text(bounds.low) + " to " + number_text(bounds.high);
+        return (bounds.low_open ? "> " : "") + shortest(bounds.low) + " to " + shortest(bounds.high);
     }
     if (low) {
-        return (bounds.low_open ? "> " : ">= ") + number_text(bounds.low);
+        return (bounds.low_open ? "> " : ">= ") + shortest(bounds.low);
     }
-    return std::isfinite(bounds.high) ? "<= " + number_text(bounds.high) : "any number";
+    return std::isfinite(bounds.high) ? "<= " + shortest(bounds.high) : "any number";
 }
 
 }  // namespace
@@ -129,6 +130,14 @@ Json field_json(const Field& field) {
                    [](const std::optional<double>* value) { return *value ? Json(**value) : Json(); },
                    [](const auto* value) { return Json(*value); }},
         field.value);
+}
+
+Json fields_json(const Fields& fields) {
+    Json object = Json::object();
+    for (const Field& field : fields) {
+        object[std::string(field.key)] = field_json(field);
+    }
+    return object;
 }
 
 std::string assign(const Field& field, const Json& value) {

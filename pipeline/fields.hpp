@@ -11,6 +11,9 @@ namespace seampath {
 
 nlohmann::ordered_json field_json(const Field& field);
 
+/// Key and value of each, as they stand in a config.
+nlohmann::ordered_json fields_json(const Fields& fields);
+
 /// Sets the option and returns an empty text, or leaves it as it is and returns what is wrong: "-1 is not above 0".
 std::string assign(const Field& field, const nlohmann::ordered_json& value);
 

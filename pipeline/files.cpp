@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void cannot_write(const fs::path& what, int error) {
     throw InputError(
-        "run: cannot write " + what.string() + ": " + std::strerror(error) +
+        "output: cannot write " + what.string() + ": " + std::strerror(error) +
         "; a folder with write permission and free space was needed; free some space or choose another --out");
 }
 
@@ -120,7 +120,7 @@ RunFolder::RunFolder(fs::path folder) : folder_(std::move(folder)) {
     }
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         close(lock_);
-        throw InputError("run: another run is writing into " + folder_.string() +
+        throw InputError("output: another run is writing into " + folder_.string() +
                          "; a folder of its own was needed; wait for it or choose another --out");
     }
     remove_temporaries(folder_);

@@ -8,8 +8,8 @@ namespace seampath {
 
 /// report.json: rows of {name, value, unit, verdict} for the part, the scan, each seam and each program file, and what
 /// each stage made of what; no times, so that the same run gives the same bytes. A verdict is "pass", "fail" or null
-/// where there is nothing to judge; a value that is not finite is null. Seams count from 0, as in the other files of the
-/// run folder.
+/// where there is nothing to judge; a value that is not finite is null. Seams count from 0, as in the other files of
+/// the run folder.
 std::string report_json(const PartResult& part);
 
 /// report.html: one page that needs no network: the verdict, the same numbers as report.json (which it carries whole in

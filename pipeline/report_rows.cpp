@@ -8,9 +8,9 @@
 
 #include "pipeline/fields.hpp"
 #include "pipeline/report_text.hpp"
-#include "pipeline/text.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -278,7 +278,7 @@ std::string exact(const ReportRow& row) {
         return *text;
     }
     const double value = std::get<double>(row.value);
-    return std::isfinite(value) ? number_text(value) : "null";
+    return std::isfinite(value) ? shortest(value) : "null";
 }
 
 }  // namespace seampath

@@ -5,7 +5,7 @@
 
 #include <openssl/evp.h>
 
-#include "pipeline/text.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -38,11 +38,7 @@ std::string decimal(double value, int decimals) {
     if (!std::isfinite(value)) {
         return "–";
     }
-    std::string text = rounded(value, decimals);
-    if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) {
-        text.erase(0, 1);
-    }
-    return text;
+    return fixed(value, decimals);
 }
 
 std::string grouped(std::int64_t value) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/text.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -13,7 +14,7 @@ std::string count(std::size_t n, const std::string& noun) {
 }
 
 std::string mm(double value, int digits = 3) {
-    return rounded(value, digits) + " mm";
+    return fixed(value, digits) + " mm";
 }
 
 /// Largest of one number over all elements; 0 when there is none.
@@ -59,7 +60,7 @@ std::string read_summary(const PartResult& part) {
     if (scan.dropped_not_finite > 0) {
         text += ", " + std::to_string(scan.dropped_not_finite) + " not finite dropped";
     }
-    return text + "; " + number_text(scan.mm_per_unit) + " mm per unit (" + scan.unit_reason + ")";
+    return text + "; " + shortest(scan.mm_per_unit) + " mm per unit (" + scan.unit_reason + ")";
 }
 
 std::string extract_summary(const PartResult& part) {
@@ -90,7 +91,7 @@ std::string validate_summary(const PartResult& part) {
 
 std::string plan_summary(const PartResult& part) {
     return count(part.planned_seams.size(), "seam") + " -> " + count(part.plan.waypoints.size(), "waypoint") + ", " +
-           rounded(part.plan.duration_s, 1) + " s of travel; chord error " + mm(part.plan.max_chord_error_mm);
+           fixed(part.plan.duration_s, 1) + " s of travel; chord error " + mm(part.plan.max_chord_error_mm);
 }
 
 std::string export_summary(const PartResult& part) {
@@ -115,8 +116,8 @@ std::string seam_table(const PartResult& part) {
         const SeamModel& model = part.models[i];
         const Deviation& deviation = part.deviations.at(i);
         rows.push_back({std::to_string(i), std::string(name(model.kind)), model.closed ? "closed" : "open",
-                        rounded(model.length_mm, 2), rounded(deviation.rms_mm, 4), rounded(deviation.max_mm, 4),
-                        rounded(sigma(model), 4), rounded(100 * deviation.coverage, 1) + " %", deviation.verdict});
+                        fixed(model.length_mm, 2), fixed(deviation.rms_mm, 4), fixed(deviation.max_mm, 4),
+                        fixed(sigma(model), 4), fixed(100 * deviation.coverage, 1) + " %", deviation.verdict});
     }
     return aligned(rows);
 }

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/digest.hpp"
-#include "pipeline/text.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 void append(std::string& line, std::initializer_list<double> values) {
     for (const double value : values) {
         line += ',';
-        line += number_text(value);
+        line += shortest(value);
     }
 }
 

@@ -1,8 +1,6 @@
 #include "pipeline/text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <numeric>
 
 namespace seampath {
@@ -25,18 +23,6 @@ std::size_t edits(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
-
-std::string number_text(double value) {
-    std::array<char, 32> text;
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-}
-
-std::string rounded(double value, int digits) {
-    std::array<char, 400> text;  // the largest double has 309 digits before its point
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, digits).ptr;
-    return {text.data(), end};
-}
 
 std::string_view near_miss(std::string_view word, std::span<const std::string_view> candidates) {
     if (word.empty() || word.size() > 64) {

@@ -8,12 +8,6 @@
 /// Small text helpers shared by messages, tables and files.
 namespace seampath {
 
-/// Shortest text that reads back as exactly this number ("nan", "inf", "-inf" for the others).
-std::string number_text(double value);
-
-/// With so many digits after the point, for people.
-std::string rounded(double value, int digits);
-
 /// The candidate that a mistyped word most likely meant: a few edits away, or the same word without its unit.
 /// Empty when nothing is near.
 std::string_view near_miss(std::string_view word, std::span<const std::string_view> candidates);

@@ -5,8 +5,8 @@
 
 namespace seampath {
 
-/// Bad input or bad configuration. The message reads "stage: what is wrong, with the value; what was needed; what to do".
-/// The program ends with exit status 2.
+/// Bad input or bad configuration. The message reads "stage: what is wrong, with the value; what was needed; what to
+/// do". The program ends with exit status 2.
 class InputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

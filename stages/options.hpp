@@ -18,9 +18,15 @@ struct Bounds {
     double high = std::numeric_limits<double>::infinity();
     bool low_open = false;
 };
-inline Bounds above(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
-inline Bounds at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false}; }
-inline Bounds within(double low, double high) { return {low, high, false}; }
+inline Bounds above(double low) {
+    return {low, std::numeric_limits<double>::infinity(), true};
+}
+inline Bounds at_least(double low) {
+    return {low, std::numeric_limits<double>::infinity(), false};
+}
+inline Bounds within(double low, double high) {
+    return {low, high, false};
+}
 
 /// One of a few names.
 struct Choice {
@@ -29,7 +35,8 @@ struct Choice {
     std::function<void(int)> set;
 };
 
-using FieldValue = std::variant<bool*, int*, double*, std::string*, std::optional<double>*, std::vector<double>*, Choice>;
+using FieldValue =
+    std::variant<bool*, int*, double*, std::string*, std::optional<double>*, std::vector<double>*, Choice>;
 
 /// `key` ends in its unit; `meaning` is one line; for a vector<double>, `length` is how many numbers it must hold.
 struct Field {

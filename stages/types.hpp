@@ -17,35 +17,38 @@ namespace seampath {
 /// What was measured. Points are kept as 32-bit offsets from `origin_mm` so that a part far from the scanner's origin
 /// loses no digits and ten million points stay at 12 bytes each.
 struct Scan {
-    std::string name;                              ///< file name without folder and extension
-    Eigen::Vector3d origin_mm{0, 0, 0};            ///< position of point i is origin_mm + points[i]
-    std::vector<Eigen::Vector3f> points;           ///< all finite
-    std::vector<Eigen::Vector3f> normals;          ///< unit, one per point, or empty when the file has none
-    std::uint32_t width = 0;                       ///< raster of an organised cloud, or 0
-    std::uint32_t height = 0;                      ///< raster of an organised cloud, or 0
-    std::vector<std::uint32_t> pixel;              ///< row * width + column of each point, ascending; empty when unorganised
-    std::optional<Eigen::Vector3d> sensor_mm;      ///< where the sensor stood, when the file says so
-    std::string format;                            ///< e.g. "ply binary_little_endian"
-    double mm_per_unit = 1;                        ///< factor that was applied to the file's numbers
-    std::string unit_reason;                       ///< why that factor was taken
-    std::uint64_t points_in_file = 0;              ///< records in the file
-    std::uint64_t dropped_not_finite = 0;          ///< records with NaN or Inf, left out of `points`
+    std::string name;                      ///< file name without folder and extension
+    Eigen::Vector3d origin_mm{0, 0, 0};    ///< position of point i is origin_mm + points[i]
+    std::vector<Eigen::Vector3f> points;   ///< all finite
+    std::vector<Eigen::Vector3f> normals;  ///< unit, one per point, or empty when the file has none
+    std::uint32_t width = 0;               ///< raster of an organised cloud, or 0
+    std::uint32_t height = 0;              ///< raster of an organised cloud, or 0
+    std::vector<std::uint32_t> pixel;      ///< row * width + column of each point, ascending; empty when unorganised
+    std::optional<Eigen::Vector3d> sensor_mm;  ///< where the sensor stood, when the file says so
+    std::string format;                        ///< e.g. "ply binary_little_endian"
+    double mm_per_unit = 1;                    ///< factor that was applied to the file's numbers
+    std::string unit_reason;                   ///< why that factor was taken
+    std::uint64_t points_in_file = 0;          ///< records in the file
+    std::uint64_t dropped_not_finite = 0;      ///< records with NaN or Inf, left out of `points`
 
     Eigen::Vector3d position(std::size_t i) const { return origin_mm + points[i].cast<double>(); }
 };
 
 /// Joint kinds. `saddle` is a fillet between two pipes whose model is the exact intersection curve.
 enum class JointKind { fillet, lap, butt, v_groove, corner, saddle };
-inline constexpr std::array<std::string_view, 6> kJointKindNames{"fillet", "lap", "butt", "v-groove", "corner", "saddle"};
-inline std::string_view name(JointKind kind) { return kJointKindNames[static_cast<std::size_t>(kind)]; }
+inline constexpr std::array<std::string_view, 6> kJointKindNames{"fillet",   "lap",    "butt",
+                                                                 "v-groove", "corner", "saddle"};
+inline std::string_view name(JointKind kind) {
+    return kJointKindNames[static_cast<std::size_t>(kind)];
+}
 
 /// One extracted point of a seam. Flank normals are unit and point out of the material, to the side of the torch.
 struct SeamPoint {
-    Eigen::Vector3d p;            ///< mm
-    Eigen::Vector3d n1;           ///< normal of the first flank at p
-    Eigen::Vector3d n2;           ///< normal of the second flank at p
-    double sigma_mm = 0;          ///< 1-sigma of p across the seam
-    bool modelled = false;        ///< true: bridged, not measured (support on both sides only)
+    Eigen::Vector3d p;      ///< mm
+    Eigen::Vector3d n1;     ///< normal of the first flank at p
+    Eigen::Vector3d n2;     ///< normal of the second flank at p
+    double sigma_mm = 0;    ///< 1-sigma of p across the seam
+    bool modelled = false;  ///< true: bridged, not measured (support on both sides only)
 };
 
 /// Ordered points of one seam. Flank 1 and 2 are so that the cross product n1 x n2 points along travel. A closed seam
@@ -53,22 +56,22 @@ struct SeamPoint {
 struct Seam {
     JointKind kind = JointKind::fillet;
     bool closed = false;
-    double confidence = 0;              ///< 0..1, how sure extraction is that this is a joint of that kind
-    std::vector<SeamPoint> points;      ///< at least 4, in order along the seam
+    double confidence = 0;          ///< 0..1, how sure extraction is that this is a joint of that kind
+    std::vector<SeamPoint> points;  ///< at least 4, in order along the seam
 };
 
 /// The few points that carry the shape of a seam.
 struct Nodes {
-    std::vector<std::size_t> index;     ///< ascending indices into Seam::points; open seams keep first and last
-    double max_chord_error_mm = 0;      ///< largest distance of any seam point from the chord of its interval
+    std::vector<std::size_t> index;  ///< ascending indices into Seam::points; open seams keep first and last
+    double max_chord_error_mm = 0;   ///< largest distance of any seam point from the chord of its interval
 };
 
-/// Cubic B-spline in space. Open: clamped knots, `control.size() + 4` of them. Periodic: `control.size() + 1` knots bound
-/// the `control.size()` spans of one period; control points wrap round.
+/// Cubic B-spline in space. Open: clamped knots, `control.size() + 4` of them. Periodic: `control.size() + 1` knots
+/// bound the `control.size()` spans of one period; control points wrap round.
 struct CubicBSpline {
     bool periodic = false;
-    std::vector<double> knots;                 ///< ascending, mm (approximate arc length)
-    std::vector<Eigen::Vector3d> control;      ///< mm
+    std::vector<double> knots;             ///< ascending, mm (approximate arc length)
+    std::vector<Eigen::Vector3d> control;  ///< mm
 };
 
 /// Flank directions and uncertainty along a model, at ascending stations; interpolated in between.
@@ -86,25 +89,25 @@ struct SeamModel {
     bool closed = false;
     CubicBSpline curve;
     double length_mm = 0;
-    std::vector<FlankSample> flanks;      ///< at least 2; closed seams: stations in [0, length), wraps round
-    double residual_rms_mm = 0;           ///< orthogonal distance of the extracted points from the curve
+    std::vector<FlankSample> flanks;  ///< at least 2; closed seams: stations in [0, length), wraps round
+    double residual_rms_mm = 0;       ///< orthogonal distance of the extracted points from the curve
     double residual_max_mm = 0;
-    double degrees_of_freedom = 0;        ///< free coefficients of the fit
+    double degrees_of_freedom = 0;  ///< free coefficients of the fit
 };
 
 /// Where one sample of the model lies relative to the scan's two flank surfaces.
 struct DeviationSample {
     double station_mm = 0;
-    Eigen::Vector3d p;                    ///< point of the model, mm
-    double flank1_mm = 0;                 ///< signed distance to flank surface 1, + outside the material
-    double flank2_mm = 0;                 ///< the same for flank surface 2
-    double distance_mm = 0;               ///< distance, in the section, to the line in which the two surfaces meet
-    double sigma_mm = 0;                  ///< 1-sigma of distance_mm
-    bool covered = false;                 ///< both flanks had enough scan points; otherwise the distances are meaningless
+    Eigen::Vector3d p;       ///< point of the model, mm
+    double flank1_mm = 0;    ///< signed distance to flank surface 1, + outside the material
+    double flank2_mm = 0;    ///< the same for flank surface 2
+    double distance_mm = 0;  ///< distance, in the section, to the line in which the two surfaces meet
+    double sigma_mm = 0;     ///< 1-sigma of distance_mm
+    bool covered = false;    ///< both flanks had enough scan points; otherwise the distances are meaningless
 };
 
-/// Verdict of one seam model against the raw scan. Statistics are over covered samples; `signed_mean_mm` is of the mean of
-/// the two flank distances.
+/// Verdict of one seam model against the raw scan. Statistics are over covered samples; `signed_mean_mm` is of the mean
+/// of the two flank distances.
 struct Deviation {
     std::vector<DeviationSample> samples;
     double signed_mean_mm = 0;
@@ -113,36 +116,38 @@ struct Deviation {
     double p95_mm = 0;
     double p997_mm = 0;
     double max_mm = 0;
-    double coverage = 0;                  ///< share of the seam's length with covered samples, 0..1
-    double tolerance_mm = 0;              ///< what the verdict was taken against
+    double coverage = 0;      ///< share of the seam's length with covered samples, 0..1
+    double tolerance_mm = 0;  ///< what the verdict was taken against
     bool pass = false;
-    std::string verdict;                  ///< one sentence with the numbers behind `pass`
+    std::string verdict;  ///< one sentence with the numbers behind `pass`
 };
 
 enum class WaypointKind { approach, weld_start, weld, weld_end, retract, air };
 inline constexpr std::array<std::string_view, 6> kWaypointKindNames{"approach", "weld_start", "weld",
                                                                     "weld_end", "retract",    "air"};
-inline std::string_view name(WaypointKind kind) { return kWaypointKindNames[static_cast<std::size_t>(kind)]; }
+inline std::string_view name(WaypointKind kind) {
+    return kWaypointKindNames[static_cast<std::size_t>(kind)];
+}
 
 /// Torch pose: +Z along the torch into the joint, +X along travel, Y completes the right-handed frame.
 struct Waypoint {
     int seam = 0;
-    int index = 0;                        ///< counts from 0 in each seam
+    int index = 0;  ///< counts from 0 in each seam
     WaypointKind kind = WaypointKind::weld;
-    double station_mm = 0;                ///< arc length along the seam; approach and retract carry that of their seam end
-    Eigen::Vector3d p;                    ///< tool centre point, mm
-    Eigen::Quaterniond q{1, 0, 0, 0};     ///< scan_from_tool, unit, no sign jumps from point to point
-    double speed_mm_s = 0;                ///< speed towards this point
-    double time_s = 0;                    ///< since the first waypoint of the plan
+    double station_mm = 0;             ///< arc length along the seam; approach and retract carry that of their seam end
+    Eigen::Vector3d p;                 ///< tool centre point, mm
+    Eigen::Quaterniond q{1, 0, 0, 0};  ///< scan_from_tool, unit, no sign jumps from point to point
+    double speed_mm_s = 0;             ///< speed towards this point
+    double time_s = 0;                 ///< since the first waypoint of the plan
     double sigma_mm = 0;
 };
 
 /// How the torch travels all seams, and how good the travel is.
 struct Plan {
-    std::vector<Waypoint> waypoints;      ///< in the order of travel
-    double max_chord_error_mm = 0;        ///< largest distance of the seam curve from the straight moves
-    double max_speed_error = 0;           ///< relative, of straight moves between weld waypoints against plan.speed_mm_s
-    double max_turn_deg = 0;              ///< largest rotation between neighbouring weld waypoints
+    std::vector<Waypoint> waypoints;  ///< in the order of travel
+    double max_chord_error_mm = 0;    ///< largest distance of the seam curve from the straight moves
+    double max_speed_error = 0;       ///< relative, of straight moves between weld waypoints against plan.speed_mm_s
+    double max_turn_deg = 0;          ///< largest rotation between neighbouring weld waypoints
     double duration_s = 0;
 };
 

@@ -6,11 +6,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/exit_status.hpp"
+
 /// The subcommands of `seampath`, one file each.
 namespace seampath {
-
-/// Exit status of the program; `run` of several scans ends with the largest of its parts.
-enum ExitStatus { kPass = 0, kOutOfTolerance = 1, kBadInput = 2, kOwnFault = 3, kInterrupted = 130 };
 
 /// A subcommand and what it does once the command line is read.
 struct Command {

@@ -38,14 +38,20 @@ int make(const Arguments& given) {
     }
     apply_overrides({{"scene", describe(scene)}, {"scanner", describe(scanner)}}, overrides);
     const Dataset dataset = make_dataset(scene, scanner, given.seed);
-    write_dataset(dataset, given.out);
-    std::cout << given.out << "/scan.ply   " << dataset.points.size() << " points\n"
-              << given.out << "/truth.json " << dataset.truth.seams.size() << " seams\n";
+    const std::filesystem::path scan = write_dataset(dataset, given.out);
+    const std::size_t seams = dataset.truth.seams.size();
+    std::cout << aligned(std::vector<std::vector<std::string>>{
+        {scan.string(), std::to_string(dataset.points.size()) + " points"},
+        {(scan.parent_path() / "truth.json").string(), std::to_string(seams) + (seams == 1 ? " seam" : " seams")}});
     return kPass;
 }
 
 int list() {
-    std::cout << "scenes:  " << join(kSceneNames) << "\npresets: " << join(kPresetNames) << "\n";
+    SceneOptions scene;
+    ScannerOptions scanner = preset("standard");
+    std::cout << "scenes:  " << join(kSceneNames) << "\npresets: " << join(kPresetNames)
+              << "\n\nWhat --set takes, with the values of preset standard:\n\n"
+              << options_table({{"scene", describe(scene)}, {"scanner", describe(scanner)}});
     return kPass;
 }
 
@@ -60,7 +66,7 @@ Command dataset_command(CLI::App& program) {
         "  seampath dataset make pipe-on-pipe --seed 3 --out data/pipe3\n"
         "  seampath dataset make tee --preset metrology --set scene.lean_deg=20 --out data/tee\n");
     const auto given = std::make_shared<Arguments>();
-    const CLI::App* list_app = app->add_subcommand("list", "scenes and scanner presets");
+    const CLI::App* list_app = app->add_subcommand("list", "scenes, scanner presets, and what --set takes");
     CLI::App* make_app = app->add_subcommand("make", "make a scan and its truth");
     make_app->add_option("SCENE", given->scene, "scene: " + join(kSceneNames))->required();
     make_app->add_option("--preset", given->preset, "scanner: " + join(kPresetNames))->capture_default_str();

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "stages/error.hpp"
-#include "tools/commands.hpp"
+#include "tools/exit_status.hpp"
 
 namespace seampath {
 namespace {

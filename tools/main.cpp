@@ -1,11 +1,11 @@
 #include <algorithm>
+#include <csignal>
 #include <iostream>
 #include <span>
 
 #include "pipeline/text.hpp"
 #include "tools/commands.hpp"
 #include "tools/failure.hpp"
-#include "tools/stop_signal.hpp"
 
 namespace seampath {
 namespace {
@@ -104,6 +104,6 @@ int run_program(int argc, char** argv) {
 }  // namespace seampath
 
 int main(int argc, char** argv) {
-    seampath::watch_stop_signals();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a failed write with a message, like a full disk
     return seampath::guarded([&] { return seampath::run_program(argc, argv); });
 }

@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-#include "pipeline/text.hpp"
+#include "stages/text.hpp"
 #include "tools/stop_signal.hpp"
 
 namespace seampath {
@@ -34,7 +34,7 @@ void ProgressLine::end(const StageTiming& timing) {
     drawer_ = std::jthread();
     ++done_;
     const std::string name = timing.stage + std::string(timing.stage.size() < 9 ? 9 - timing.stage.size() : 0, ' ');
-    std::cerr << prefix_ << name << " " << timing.summary << "; " << rounded(timing.seconds, 2) << " s"
+    std::cerr << prefix_ << name << " " << timing.summary << "; " << fixed(timing.seconds, 2) << " s"
               << (timing.resumed ? " (resumed)" : "") << std::endl;
 }
 
@@ -44,7 +44,7 @@ void ProgressLine::draw(const std::stop_token& stop, const std::string& stage, s
     while (!wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return stop.stop_requested(); })) {
         const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
         std::cerr << kClearLine << prefix_ << "[" << std::string(done, '#') << std::string(kSteps - done, '.') << "] "
-                  << stage << " " << rounded(passed.count(), 1) << " s"
+                  << stage << " " << fixed(passed.count(), 1) << " s"
                   << (stop_asked() ? ", stopping after this stage" : "") << std::flush;
     }
     std::cerr << kClearLine << std::flush;

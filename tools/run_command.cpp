@@ -13,6 +13,7 @@
 #include "tools/commands.hpp"
 #include "tools/failure.hpp"
 #include "tools/progress_line.hpp"
+#include "tools/stop_signal.hpp"
 
 namespace seampath {
 namespace {
@@ -160,6 +161,7 @@ int run_several(std::vector<Part>& all, const Arguments& given, const Config& co
 }
 
 int run(const Arguments& given) {
+    watch_stop_signals();
     const Config config = read_config(given.config, overrides(given));
     resume(given);  // a wrong --from shows before the work
     std::vector<Part> all = parts(given);
@@ -181,12 +183,13 @@ Command run_command(CLI::App& program) {
     app->add_option("SCAN", given->scans, "scan files; several are several parts")->required();
     app->add_option("--out", given->out, "folder for the results")->required();
     app->add_option("--config", given->config, "config file, JSON with comments");
-    app->add_option("--joint", given->joint, "joint kind, the same as --set extract.joint=KIND");
-    app->add_option("--robot", given->robot, "robots, with commas between, the same as --set export.robots=NAMES");
+    app->add_option("--joint", given->joint, "joint kind, auto or fillet; the same as --set extract.joint=KIND");
+    app->add_option("--robot", given->robot,
+                    "robots, with commas between, of " + join(kRobotNames) + "; the same as --set export.robots=NAMES");
     app->add_option("--set", given->set, "stage.key=value, over the config file")->allow_extra_args(false);
-    app->add_option("--from", given->from, "compute again from this stage on");
+    app->add_option("--from", given->from, "compute again from this stage on: " + join(kStageNames));
     app->add_flag("--fresh", given->fresh, "compute everything again");
-    app->add_flag("--json", given->json, "print report.json's content");
+    app->add_flag("--json", given->json, "print report.json's content instead of the table");
     app->footer(
         "Examples:\n"
         "  seampath run tee.ply --out out\n"

@@ -1,11 +1,13 @@
 #include "tools/stop_signal.hpp"
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <string_view>
 
 #include <unistd.h>
 
-#include "tools/commands.hpp"
+#include "tools/exit_status.hpp"
 
 namespace seampath {
 namespace {
@@ -17,6 +19,10 @@ void on_stop_signal(int) {
     if (asked.exchange(true)) {
         _exit(kInterrupted);
     }
+    const int before = errno;
+    constexpr std::string_view kText = "\ninterrupted: finishing the stage at work; Ctrl-C again ends at once\n";
+    static_cast<void>(!write(STDERR_FILENO, kText.data(), kText.size()));  // there is no other way to say it
+    errno = before;
 }
 
 }  // namespace
@@ -27,8 +33,6 @@ void watch_stop_signals() {
     action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    // a file size limit then shows as a failed write with a message, like a full disk
-    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool stop_asked() {

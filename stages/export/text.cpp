@@ -26,23 +26,9 @@ bool is_part_of_name(char c) {
 
 }  // namespace
 
-std::string shortest(double value) {
-    std::array<char, 32> text;
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 std::string plain(double value) {
     std::array<char, kLongestNumber> text;
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr};
-}
-
-std::string fixed(double value, int decimals) {
-    std::array<char, kLongestNumber> text;
-    const auto end =
-        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr;
-    const std::string_view written(text.data(), static_cast<std::size_t>(end - text.data()));
-    const bool zero = written.find_first_not_of("-0.") == std::string_view::npos;
-    return std::string(zero && written.front() == '-' ? written.substr(1) : written);
 }
 
 std::string list(const std::vector<double>& values, std::string_view separator) {

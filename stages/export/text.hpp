@@ -5,18 +5,13 @@
 #include <vector>
 
 #include "stages/export/format.hpp"
+#include "stages/text.hpp"
 
 /// Private to the export stage: numbers, names and a scanner for the readers.
 namespace seampath::exporting {
 
-/// Shortest form that reads back exactly.
-std::string shortest(double value);
-
 /// Shortest form that reads back exactly and has no exponent, for robot languages and messages.
 std::string plain(double value);
-
-/// So many decimals, never an exponent, never "-0".
-std::string fixed(double value, int decimals);
 
 /// "a,b,c" of shortest numbers.
 std::string list(const std::vector<double>& values, std::string_view separator);

@@ -96,6 +96,19 @@ Cloud vertices_as_points(const Mesh& mesh) {
 
 }  // namespace
 
+Eigen::Vector3d take_vector(const Source& source, std::size_t at, std::string_view line, const std::string& needed) {
+    Eigen::Vector3d p;
+    for (double& value : p) {
+        const std::string_view token = next_token(line);
+        const auto number = parse_number(token);
+        if (!number) {
+            fail_at_line(source, at, in_quotes(token) + " is not a number; " + needed);
+        }
+        value = *number;
+    }
+    return p;
+}
+
 double largest_extent(const Mesh& mesh) {
     constexpr double kNone = 2 * kCoordinateLimit;
     Eigen::Vector3d low = Eigen::Vector3d::Constant(kNone);

@@ -20,6 +20,10 @@ struct Mesh {
     std::vector<std::array<std::uint32_t, 3>> faces;
 };
 
+/// Takes three numbers from the line that begins at byte `at`. Throws InputError when one is none; `needed` says what
+/// was expected and what to do.
+Eigen::Vector3d take_vector(const Source& source, std::size_t at, std::string_view line, const std::string& needed);
+
 /// Largest side of the axis-parallel box of all finite vertices: a mesh has no stray returns. 0 for no vertices.
 double largest_extent(const Mesh& mesh);
 

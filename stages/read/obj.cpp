@@ -23,18 +23,8 @@ struct ObjReader {
     std::size_t highest_index = 0;  ///< of any face, from 1
     std::size_t highest_at = 0;     ///< byte of that face's line
 
-    Eigen::Vector3d take_vector(std::size_t at, std::string_view line) const {
-        Eigen::Vector3d p;
-        for (double& value : p) {
-            const std::string_view token = next_token(line);
-            const auto number = parse_number(token);
-            if (!number) {
-                fail_at_line(source, at,
-                             in_quotes(token) + " is not a number; expected three; repair or remove this line");
-            }
-            value = *number;
-        }
-        return p;
+    Eigen::Vector3d three_numbers(std::size_t at, std::string_view line) const {
+        return take_vector(source, at, line, "expected three; repair or remove this line");
     }
 
     /// Index from 0 of one corner: "v", "v/vt", "v//vn" or "v/vt/vn"; negative ones count back from the last vertex.
@@ -84,9 +74,9 @@ struct ObjReader {
     void take_line(std::size_t at, std::string_view line) {
         const std::string_view keyword = next_token(line);
         if (keyword == "v") {
-            mesh.vertices.push_back(take_vector(at, line));
+            mesh.vertices.push_back(three_numbers(at, line));
         } else if (keyword == "vn") {
-            mesh.normals.push_back(take_vector(at, line));
+            mesh.normals.push_back(three_numbers(at, line));
         } else if (keyword == "f") {
             take_face(at, line);
         } else if (std::find(kPassedOver.begin(), kPassedOver.end(), keyword) == kPassedOver.end()) {

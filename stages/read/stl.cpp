@@ -57,20 +57,6 @@ void read_binary(const Source& source, Mesh& mesh) {
     }
 }
 
-Eigen::Vector3d take_vertex(const Source& source, std::size_t at, std::string_view line) {
-    Eigen::Vector3d p;
-    for (double& value : p) {
-        const std::string_view token = next_token(line);
-        const auto number = parse_number(token);
-        if (!number) {
-            fail_at_line(source, at,
-                         in_quotes(token) + " is not a number; expected 'vertex x y z'; export the file again");
-        }
-        value = *number;
-    }
-    return p;
-}
-
 void read_ascii(const Source& source, Mesh& mesh) {
     // The line that must come at each place: 0 outside of solids, 1 within one (or its end), then those of a facet.
     constexpr std::array<std::string_view, 8> kExpected{"solid",  "facet",  "outer",   "vertex",
@@ -91,7 +77,7 @@ void read_ascii(const Source& source, Mesh& mesh) {
                              "' was expected; export the file again");
         }
         if (keyword == "vertex") {
-            mesh.vertices.push_back(take_vertex(source, at, line));
+            mesh.vertices.push_back(take_vector(source, at, line, "expected 'vertex x y z'; export the file again"));
         }
         if (keyword == "endloop") {
             add_face(source, mesh);

@@ -140,7 +140,8 @@ TEST(Cli, DatasetMakesTheSameBytesFromTheSameSeed) {
     }
     expect_same_files(first.path(), second.path());
     EXPECT_EQ(contents(first.path()).size(), 2u);
-    EXPECT_THAT(seampath_program({"dataset", "list"}).out, AllOf(HasSubstr("pipe-on-pipe"), HasSubstr("standard")));
+    EXPECT_THAT(seampath_program({"dataset", "list"}).out,
+                AllOf(HasSubstr("pipe-on-pipe"), HasSubstr("standard"), HasSubstr("scene.lean_deg")));
     EXPECT_THAT(seampath_program({"dataset", "make", "tea", "--out", "x"}).err, HasSubstr("did you mean \"tee\"?"));
     EXPECT_THAT(seampath_program({"dataset", "make", "tee", "--out", "x", "--set", "scene.lengthmm=3"}).err,
                 HasSubstr("--set: /scene/lengthmm: there is no such option; did you mean \"length_mm\"?"));

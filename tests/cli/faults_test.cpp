@@ -92,11 +92,11 @@ TEST(Faults, FolderThatCannotBeWritten) {
     std::ofstream(folder.path() / "file") << "x";
     const Outcome under_file = seampath_program({"run", small_tee(), "--out", folder.path() / "file" / "out"});
     EXPECT_EQ(under_file.status, 2);
-    EXPECT_EQ(under_file.err.substr(0, 18), "run: cannot write ");
+    EXPECT_EQ(under_file.err.substr(0, 21), "output: cannot write ");
     EXPECT_THAT(under_file.err, HasSubstr("choose another --out"));
     const Outcome proc = seampath_program({"run", small_tee(), "--out", "/proc/self"});
     EXPECT_EQ(proc.status, 2);
-    EXPECT_THAT(proc.err, HasSubstr("run: cannot write "));
+    EXPECT_THAT(proc.err, HasSubstr("output: cannot write "));
 }
 
 /// Every limit on the size of a file: whatever file fails, one line, status 2, no temporary file; then a run completes.
@@ -163,6 +163,7 @@ TEST(Faults, CtrlCEndsWith130AndARunGoesOnFromThere) {
         run.signal(number);
         const Outcome stopped = run.wait();
         EXPECT_EQ(stopped.status, 130) << stopped.err;
+        EXPECT_THAT(stopped.err, HasSubstr("interrupted: finishing the stage at work; Ctrl-C again ends at once"));
         EXPECT_THAT(stopped.err, HasSubstr("interrupted; run the same command again"));
         EXPECT_FALSE(holds_temporary_files(out.path()));
         EXPECT_FALSE(fs::exists(out.path() / "report.html"));

@@ -205,7 +205,7 @@ TEST_F(Folder, UnwritablePlaceIsRefused) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "file") << "in the way";
     EXPECT_THAT([&] { write_dataset(make(0, 1, coarse()), folder_ / "file" / "below"); },
-                ThrowsMessage<InputError>(HasSubstr("can't write")));
+                ThrowsMessage<InputError>(HasSubstr("cannot write")));
 }
 
 }  // namespace

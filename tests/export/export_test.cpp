@@ -35,14 +35,6 @@ using testing::ThrowsMessage;
 
 constexpr double kDeg = std::numbers::pi / 180;
 
-ExportOptions arc_options() {
-    ExportOptions options;
-    options.abb_seam_data = "seam1";
-    options.abb_weld_data = "weld1";
-    options.ur_arc_output = 3;
-    return options;
-}
-
 std::string program(const Plan& plan, const std::string& robot, ExportOptions options = {}) {
     options.robots = robot;
     const std::vector<ProgramFile> files = export_programs(plan, options);
@@ -170,7 +162,7 @@ TEST(Export, ThreeHundredRandomPlansComeBack) {
     std::mt19937_64 generator(7);
     for (int i = 0; i < 300; ++i) {
         const Plan plan = test::random_plan(generator);
-        for (const ExportOptions& options : {ExportOptions{}, arc_options()}) {
+        for (const ExportOptions& options : {ExportOptions{}, test::arc_options()}) {
             for (const ProgramFile& file : export_programs(plan, options)) {
                 const bool exact = file.robot == "csv" || file.robot == "json";
                 EXPECT_LE(file.max_position_error_mm, exact ? 0 : 0.0005 * std::sqrt(3) + 1e-9)
@@ -187,7 +179,7 @@ TEST(Export, PlannedSeamsComeBack) {
     const std::vector<SeamModel> models{test::model_of(test::circle(40), true, 64),
                                         test::model_of(test::s_curve(200, 12), false, 120)};
     const Plan planned = plan(models, {});
-    for (const ProgramFile& file : export_programs(planned, arc_options())) {
+    for (const ProgramFile& file : export_programs(planned, test::arc_options())) {
         EXPECT_LE(file.max_position_error_mm, 0.0009) << file.robot;
         EXPECT_LE(file.max_orientation_error_deg, 1e-4) << file.robot;
         EXPECT_LE(file.max_speed_error, 1e-9) << file.robot << ": 8 and 100 mm/s have few digits";
@@ -196,7 +188,7 @@ TEST(Export, PlannedSeamsComeBack) {
 
 TEST(Export, SameBytesEachTime) {
     const Plan plan = test::golden_plan();
-    const auto a = export_programs(plan, arc_options()), b = export_programs(plan, arc_options());
+    const auto a = export_programs(plan, test::arc_options()), b = export_programs(plan, test::arc_options());
     ASSERT_EQ(a.size(), 4u);
     for (std::size_t i = 0; i < a.size(); ++i) {
         EXPECT_EQ(a[i].content, b[i].content);
@@ -253,7 +245,7 @@ TEST(Export, PosesAreInTheBaseFrame) {
 }
 
 TEST(Export, AbbWeldsWithArcWare) {
-    ExportOptions options = arc_options();
+    ExportOptions options = test::arc_options();
     options.abb_tool = "tTorch";
     options.abb_work_object = "wPart";
     options.abb_zone = "z5";
@@ -314,7 +306,7 @@ Plan long_plan(int seams, int points) {
 }
 
 TEST(Export, AbbSplitsLongProgramsBetweenSeams) {
-    ExportOptions options = arc_options();
+    ExportOptions options = test::arc_options();
     options.robots = "abb";
     const auto files = export_programs(long_plan(3, 2000), options);
     std::vector<std::string> names;
@@ -337,7 +329,7 @@ TEST(Export, AbbRefusesASeamOfTooManyLines) {
 }
 
 TEST(Export, UrWeldsWithAnOutputAndBlendsThatCannotOverlap) {
-    const std::string text = program(test::golden_plan(), "ur", arc_options());
+    const std::string text = program(test::golden_plan(), "ur", test::arc_options());
     EXPECT_THAT(text, AllOf(testing::StartsWith("def seampath():\n"), testing::EndsWith("\nend\n")));
     EXPECT_EQ(lines_with(text, "set_standard_digital_out(3, True)").size(), 2u);
     EXPECT_EQ(lines_with(text, "set_standard_digital_out(3, False)").size(), 3u) << "off first, then after each seam";

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "stages/export/export.hpp"
 #include "stages/types.hpp"
 
 /// Plans made by hand and by chance, for the exporters.
@@ -62,6 +63,15 @@ inline Plan golden_plan() {
          waypoint(1, weld, 32.25, {30, 40, 0}, c, 12), waypoint(1, weld, 96.75, {-40, 30, 0}, d, 12),
          waypoint(1, weld, 150, {-30, -40, 0}, d, 12), waypoint(1, weld, 215, {40, -30, 0}, c, 12),
          waypoint(1, weld_end, 314, {50, 0, 0}, c, 12), waypoint(1, retract, 314, {50, 0, 25}, c, 100)});
+}
+
+/// With all that the arc is switched on and off with.
+inline ExportOptions arc_options() {
+    ExportOptions options;
+    options.abb_seam_data = "seam1";
+    options.abb_weld_data = "weld1";
+    options.ur_arc_output = 3;
+    return options;
 }
 
 /// One to three seams of 2 to 40 weld points each, anywhere within 3 m, at any speed and any rotation, turned by less

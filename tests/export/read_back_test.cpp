@@ -16,19 +16,11 @@ namespace {
 using exporting::Format;
 using exporting::TextFile;
 
-ExportOptions arc_options() {
-    ExportOptions options;
-    options.abb_seam_data = "seam1";
-    options.abb_weld_data = "weld1";
-    options.ur_arc_output = 3;
-    return options;
-}
-
 class ReadBack : public testing::TestWithParam<std::size_t> {
 protected:
     const Format& format() const { return exporting::format(GetParam()); }
     const Plan plan = test::golden_plan();
-    const ExportOptions options = arc_options();
+    const ExportOptions options = test::arc_options();
 
     void read_and_compare(const std::string& text) const {
         compare(format(), format().told(options), plan.waypoints, format().read({{"damaged", text}}));
@@ -188,7 +180,7 @@ TEST(ReadBackRules, HoldTheLanguages) {
         {3, "movep(p[", "movep([", "a number was needed"},
         {3, "movep(", "movec(", "a known function"},
     };
-    ExportOptions options = arc_options();
+    ExportOptions options = test::arc_options();
     options.program_name = "golden";
     const Plan plan = test::golden_plan();
     for (const Damage& damage : all) {
