@@ -190,6 +190,8 @@ std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, co
     crease.n1 = normal[0];
     crease.n2 = normal[1];
     crease.t = t;
+    crease.piece = centre.piece;
+    crease.decided = centre.decided;
     crease.weight = n - static_cast<double>(split.unexplained);
     return crease;
 }

@@ -17,6 +17,8 @@ struct Crease {
     Eigen::Vector3d n2;
     double weight = 0;      ///< surfels explained
     bool concave = false;
+    std::uint32_t piece = 0;        ///< of the scan, see Surfel
+    bool decided = true;            ///< whether `concave` is known; otherwise the normals may be the other way round
 };
 
 /// Robust two-plane fits at every surfel that is not flat, in the order of the surfels. `noise` is the scan's, mm.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -28,15 +29,15 @@ double cell_size(const ScanScale& scale, std::size_t points) {
     return std::max(std::clamp(std::sqrt(static_cast<double>(points) / kCells), 2.5, 4.0) * scale.spacing, 2 * scale.noise);
 }
 
-// Concave creases, heaviest first. Where nothing told the air from the material, the joints do: a scan made to find a seam
-// shows more of concave joints than of convex edges.
-std::vector<Crease> seeds_of(std::vector<Crease> creases, bool oriented) {
-    double balance = 0;
+// Concave creases, heaviest first. Where nothing told the air from the material of a piece, its joints do: a scan made to find
+// a seam shows more of concave joints than of convex edges.
+std::vector<Crease> seeds_of(std::vector<Crease> creases) {
+    std::map<std::uint32_t, double> balance;
     for (const Crease& c : creases) {
-        balance += c.concave ? c.weight : -c.weight;
+        balance[c.piece] += c.concave ? c.weight : -c.weight;
     }
-    if (!oriented && balance < 0) {
-        for (Crease& c : creases) {
+    for (Crease& c : creases) {
+        if (!c.decided && balance[c.piece] < 0) {
             c.concave = !c.concave;
             c.n1 = -c.n1;
             c.n2 = -c.n2;
@@ -99,11 +100,11 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     if (scale.spacing <= 0) {
         throw InputError("extract: all points lie in one place; a part with surfaces was needed; check the file");
     }
-    const PointGrid grid(scan.points, cell_size(scale, scan.points.size()));
+    const PointGrid grid(scan.points, cell_size(scale, scan.points.size()), without_strays(scan.points));
     Surfels surfels = make_surfels(grid, 4.5 * grid.cell());
-    const bool oriented = orient(surfels, grid, scan);
+    orient(surfels, grid, scan);
     result.orientation_reason = surfels.orientation_reason;
-    const std::vector<Crease> seeds = seeds_of(find_creases(surfels, scale.noise), oriented);
+    const std::vector<Crease> seeds = seeds_of(find_creases(surfels, scale.noise));
 
     const SectionWindow window = following_window(scale);
     const Tracker tracker{grid, scale, window, options.station_mm > 0 ? options.station_mm : grid.cell()};

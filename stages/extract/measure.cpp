@@ -70,9 +70,10 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
     double reach = look;
     for (int k = 0; k < 2; ++k) {
         const Flank& flank = fit->flank[k];
-        const double near = flank.window.band, strip = (flank.window.away - near) / kStrips;
+        // Near the seam: a slanted end must still lie ahead in every strip.
+        const double near = flank.window.band, strip = std::min(flank.window.away - near, 16 * tracker.scale.spacing) / kStrips;
         std::array<std::vector<double>, kStrips> s;
-        tracker.grid.for_points_in_ball(at.p, std::hypot(flank.window.away, look), [&](const Eigen::Vector3f& q, double) {
+        tracker.grid.for_points_in_ball(at.p, std::hypot(near + kStrips * strip, look), [&](const Eigen::Vector3f& q, double) {
             const Eigen::Vector3d v = q.cast<double>() - at.p;
             const double x = v.dot(ahead), u = v.dot(d[k]);
             if (x >= 0 && x <= look && u >= near && u < near + kStrips * strip) {

@@ -132,8 +132,8 @@ void orient_to_file_normals(Surfels& surfels, const PointGrid& grid, const Scan&
     }
 }
 
-// Consistent signs along the spanning tree that crosses the least bent places first. Returns the piece of each surfel.
-std::vector<std::uint32_t> make_consistent(Surfels& surfels) {
+// Consistent signs along the spanning tree that crosses the least bent places first; says which piece each surfel is of.
+void make_consistent(Surfels& surfels) {
     std::vector<Surfel>& at = surfels.at;
     std::vector<Edge> edges;
     for (std::uint32_t a = 0; a < at.size(); ++a) {
@@ -151,19 +151,17 @@ std::vector<std::uint32_t> make_consistent(Surfels& surfels) {
     for (const Edge& e : edges) {
         sets.join(e.a, e.b, at[e.a].n.dot(at[e.b].n) < 0);
     }
-    std::vector<std::uint32_t> piece(at.size());
     for (std::uint32_t i = 0; i < at.size(); ++i) {
         const auto [root, turned] = sets.find(i);
-        piece[i] = root;
+        at[i].piece = root;
         if (turned) {
             at[i].n = -at[i].n;
         }
     }
-    return piece;
 }
 
-// Per piece: how many more of its normals are free than of their opposites.
-bool turn_outwards(Surfels& surfels, const PointGrid& grid, const std::vector<std::uint32_t>& piece) {
+// Per piece: how many more of its normals are free than of their opposites. One ray in fifty must decide.
+void turn_outwards(Surfels& surfels, const PointGrid& grid) {
     std::vector<Surfel>& at = surfels.at;
     const Eigen::Vector3d low = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
     const Eigen::Vector3d high = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
@@ -180,17 +178,15 @@ bool turn_outwards(Surfels& surfels, const PointGrid& grid, const std::vector<st
     });
     std::vector<int> votes(at.size(), 0), size(at.size(), 0);
     for (std::size_t i = 0; i < at.size(); ++i) {
-        votes[piece[i]] += vote[i];
-        ++size[piece[i]];
+        votes[at[i].piece] += vote[i];
+        ++size[at[i].piece];
     }
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        if (votes[piece[i]] < 0) {
-            at[i].n = -at[i].n;
+    for (Surfel& s : at) {
+        s.decided = std::abs(votes[s.piece]) * 50 * static_cast<int>(stride) >= size[s.piece] && votes[s.piece] != 0;
+        if (votes[s.piece] < 0) {
+            s.n = -s.n;
         }
     }
-    // The largest piece speaks for the scan: without at least one ray in fifty deciding, either side may be the air.
-    const auto largest = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
-    return std::abs(votes[largest]) * 50 >= size[largest] / static_cast<int>(stride);
 }
 
 // The plane that holds most surfels: the plate that the part is, or the table that it lies on.
@@ -217,7 +213,7 @@ MainPlane main_plane(const Surfels& surfels, double reach) {
 
 // Where one plane is much of the scan and nearly all else lies on one side of it, that side is the air: parts stand on plates
 // and tables, and nothing is seen through them. Pieces without a share in the plane keep their turn.
-bool turn_to_side_of_main_plane(Surfels& surfels, const std::vector<std::uint32_t>& piece, double cell) {
+bool turn_to_side_of_main_plane(Surfels& surfels, double cell) {
     constexpr double kMain = 0.25, kOneSide = 0.85;
     MainPlane plane = main_plane(surfels, cell);
     double above = 0, below = 0;
@@ -234,14 +230,15 @@ bool turn_to_side_of_main_plane(Surfels& surfels, const std::vector<std::uint32_
         plane.d = -plane.d;
     }
     std::vector<double> sum(surfels.at.size(), 0);
-    for (std::size_t i = 0; i < surfels.at.size(); ++i) {
-        if (plane.holds(surfels.at[i], cell)) {
-            sum[piece[i]] += surfels.at[i].n.dot(plane.n);
+    for (const Surfel& s : surfels.at) {
+        if (plane.holds(s, cell)) {
+            sum[s.piece] += s.n.dot(plane.n);
         }
     }
-    for (std::size_t i = 0; i < surfels.at.size(); ++i) {
-        if (sum[piece[i]] < 0) {
-            surfels.at[i].n = -surfels.at[i].n;
+    for (Surfel& s : surfels.at) {
+        s.decided = s.decided || sum[s.piece] != 0;
+        if (sum[s.piece] < 0) {
+            s.n = -s.n;
         }
     }
     return true;
@@ -271,32 +268,30 @@ Surfels make_surfels(const PointGrid& grid, double radius) {
     return surfels;
 }
 
-bool orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
+void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
     if (surfels.at.empty()) {
-        return false;
+        return;
     }
     if (!scan.normals.empty()) {
         orient_to_file_normals(surfels, grid, scan);
         surfels.orientation_reason = "air side from the normals in the file";
-        return true;
+        return;
     }
     if (scan.sensor_mm) {
         orient_to_sensor(surfels, *scan.sensor_mm - scan.origin_mm);
         surfels.orientation_reason = "air side from the sensor's place in the file";
-        return true;
+        return;
     }
-    const std::vector<std::uint32_t> piece = make_consistent(surfels);
-    const bool outwards = turn_outwards(surfels, grid, piece);
-    if (turn_to_side_of_main_plane(surfels, piece, grid.cell())) {
+    make_consistent(surfels);
+    turn_outwards(surfels, grid);
+    const auto open = std::count_if(surfels.at.begin(), surfels.at.end(), [](const Surfel& s) { return !s.decided; });
+    if (turn_to_side_of_main_plane(surfels, grid.cell())) {
         surfels.orientation_reason = "air side is the side of the main plane on which the rest of the scan lies";
-        return true;
-    }
-    if (outwards) {
+    } else if (2 * static_cast<std::size_t>(open) < surfels.at.size()) {
         surfels.orientation_reason = "air side is the one to which the surfaces are open";
-        return true;
+    } else {
+        surfels.orientation_reason = "the scan is open to both sides; the air is taken to be where the joints are concave";
     }
-    surfels.orientation_reason = "the scan is open to both sides; the air is taken to be where the joints are concave";
-    return false;
 }
 
 }  // namespace seampath::detail

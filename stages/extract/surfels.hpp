@@ -15,6 +15,8 @@ namespace seampath::detail {
 struct Surfel {
     Eigen::Vector3d p;                        ///< mean of the cell's points, relative to the scan's origin, mm
     Eigen::Vector3d n{0, 0, 0};               ///< unit, out of the material; zero where too few neighbours
+    std::uint32_t piece = 0;                  ///< of the scan that hangs together, by its first surfel
+    bool decided = true;                      ///< something told which side of its piece is the air
     double flatness = 0;                      ///< rms distance of the neighbours from their plane, mm
     std::vector<std::uint32_t> next;          ///< surfels that touch it, ascending
     std::vector<std::uint32_t> neighbours;    ///< surfels within the radius that hang together with it; itself first
@@ -33,6 +35,6 @@ Surfels make_surfels(const PointGrid& grid, double radius);
 /// normals are made consistent over each connected piece (minimum spanning tree, Hoppe et al. 1992) and each piece is turned
 /// so that fewer of its normals run into other parts of the scan: what a scanner saw is open to the outside, and the inside
 /// of a box, web or pipe is not. False when a piece gave no evidence; then either side may be the air.
-bool orient(Surfels& surfels, const PointGrid& grid, const Scan& scan);
+void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan);
 
 }  // namespace seampath::detail

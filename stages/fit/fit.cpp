@@ -81,13 +81,14 @@ void solve_control(CubicBSpline& curve, const Data& data, const std::vector<doub
     }
 }
 
-// Least squares of the orthogonal distances: control points and foot points in turn, Tukey weights on distance / sigma.
-CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool periodic, std::vector<double>& residual) {
+// Least squares of the orthogonal distances: control points and foot points in turn. `robust` puts Tukey weights on
+// distance / sigma; not while the knots are still too few to follow the seam: its bends would pass for outliers.
+CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool periodic, bool robust, std::vector<double>& residual) {
     CubicBSpline curve = with_knots(breaks, periodic);
-    std::vector<double> robust(data.p.size(), 1);
+    std::vector<double> trust(data.p.size(), 1);
     residual.assign(data.p.size(), 0);
     for (int round = 0; round < kFootPointRounds; ++round) {
-        solve_control(curve, data, robust);
+        solve_control(curve, data, trust);
         std::vector<double> relative;
         for (std::size_t i = 0; i < data.p.size(); ++i) {
             // The ends of an open curve stay where the seam's ends are.
@@ -98,9 +99,9 @@ CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool 
             relative.push_back(residual[i] * data.weight[i]);
         }
         const double scale = std::max(1.0, 1.2 * quantile(relative, 0.5));
-        for (std::size_t i = 0; i < data.p.size(); ++i) {
+        for (std::size_t i = 0; robust && i < data.p.size(); ++i) {
             const double x = residual[i] * data.weight[i] / (kTukey * scale);
-            robust[i] = x < 1 ? (1 - x * x) * (1 - x * x) : 0;
+            trust[i] = x < 1 ? (1 - x * x) * (1 - x * x) : 0;
         }
     }
     return curve;
@@ -112,7 +113,7 @@ std::set<std::size_t> poor_spans(const Data& data, const std::vector<double>& re
     for (std::size_t i = 0; i < data.p.size(); ++i) {
         const auto above = std::upper_bound(breaks.begin(), breaks.end(), data.u[i]) - breaks.begin();
         const auto span = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(breaks.size()) - 2));
-        const double r = std::min(residual[i] * data.weight[i], 5.0);
+        const double r = residual[i] * data.weight[i];
         square[span] += r * r;
         count[span] += 1;
     }
@@ -205,7 +206,7 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
     model.closed = seam.closed;
     while (true) {
         data.u = chord;
-        model.curve = orthogonal_fit(data, breaks, seam.closed, residual);
+        model.curve = orthogonal_fit(data, breaks, seam.closed, false, residual);
         const std::set<std::size_t> poor = poor_spans(data, residual, breaks, options.max_residual_sigma);
         if (poor.empty() || 2 * breaks.size() > seam.points.size()) {
             break;
@@ -219,6 +220,8 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
         }
         breaks = std::move(finer);
     }
+    data.u = chord;
+    model.curve = orthogonal_fit(data, breaks, seam.closed, true, residual);
     if (!(period > 0)) {
         throw InputError("fit: the seam has no length; all its points coincide; check the scan");
     }

@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "stages/geometry/grid.hpp"
+#include "stages/geometry/lot.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 
@@ -17,19 +18,29 @@ namespace {
 constexpr std::size_t kPlaces = 400;       // the median of so many is stable to a few per cent
 constexpr std::size_t kNeighbours = 16;
 
-// Extent of the bulk of the points: stray returns metres away must not set the first cell size.
-double robust_extent(std::span<const Eigen::Vector3f> points) {
-    const std::size_t stride = std::max<std::size_t>(1, points.size() / 4096);
-    double extent = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<double> x;
-        for (std::size_t i = 0; i < points.size(); i += stride) {
-            x.push_back(points[i][axis]);
+struct Bulk {
+    Eigen::Vector3d middle;
+    double extent = 0;      // mm, of the longest axis without the outer 2 % at both ends
+};
+
+Bulk bulk_of(std::span<const Eigen::Vector3f> points) {
+    Bulk bulk;
+    // A sample by lot, some thousands: the order of the points must not matter.
+    const auto limit = static_cast<std::uint32_t>(std::min(1.0, 8192.0 / static_cast<double>(points.size())) * 4294967295.0);
+    std::vector<double> x[3];
+    for (const Eigen::Vector3f& p : points) {
+        if (lot_of(p) <= limit) {
+            for (int axis = 0; axis < 3; ++axis) {
+                x[axis].push_back(p[axis]);
+            }
         }
-        const double low = quantile(x, 0.02), high = quantile(x, 0.98);
-        extent = std::max(extent, high - low);
     }
-    return extent;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = quantile(x[axis], 0.02), high = quantile(x[axis], 0.98);
+        bulk.middle[axis] = 0.5 * (low + high);
+        bulk.extent = std::max(bulk.extent, high - low);
+    }
+    return bulk;
 }
 
 // Distance of the k-th neighbour; the ball grows until it holds enough points.
@@ -133,13 +144,25 @@ double typical_scale(const std::vector<Patch>& patches) {
 
 }  // namespace
 
+std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points) {
+    constexpr double kFar = 100;
+    const Bulk bulk = bulk_of(points);
+    std::vector<std::uint8_t> keep(points.size());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        keep[i] = (points[i].cast<double>() - bulk.middle).cwiseAbs().maxCoeff() <= kFar * bulk.extent;
+        kept += keep[i];
+    }
+    return kept == points.size() ? std::vector<std::uint8_t>{} : keep;
+}
+
 ScanScale estimate_scale(std::span<const Eigen::Vector3f> points) {
     ScanScale scale;
-    const double extent = points.size() < 50 ? 0 : robust_extent(points);
+    const double extent = points.size() < 50 ? 0 : bulk_of(points).extent;
     if (extent <= 0) {
         return scale;
     }
-    const PointGrid grid(points, extent / 128);
+    const PointGrid grid(points, extent / 128, without_strays(points));
     std::vector<Eigen::Vector3d> places;
     for (std::size_t k = 0; k < kPlaces; ++k) {
         // Through the points in the order of space, so that the choice does not hang on the order of the file.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -12,6 +14,10 @@ struct ScanScale {
     double noise = 0;        ///< mm; robust 1-sigma of points about locally fitted quadrics
     double correlation = 1;  ///< variance of means of neighbouring points over that of as many independent ones, >= 1
 };
+
+/// Flags of the points that lie within a hundred extents of the bulk of the scan; empty when all do. A single return from
+/// the end of the world must not set the size of a grid's cells.
+std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points);
 
 /// Median over some hundred places spread over the scan. Fewer than 50 points: both are 0.
 ScanScale estimate_scale(std::span<const Eigen::Vector3f> points);

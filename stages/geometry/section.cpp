@@ -1,12 +1,13 @@
 #include "stages/geometry/section.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include <Eigen/Dense>
+
+#include "stages/geometry/lot.hpp"
 
 namespace seampath {
 namespace {
@@ -30,15 +31,6 @@ struct Sample {
 
 // More points than this to a flank add time and, their noise being shared, nothing to the fit: lots are drawn.
 constexpr std::size_t kEnoughPoints = 1600;
-
-std::uint32_t draw_lot(const Eigen::Vector3f& q) {
-    std::uint32_t h = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        h = (h ^ std::bit_cast<std::uint32_t>(q[axis])) * 0x9e3779b1u;
-        h ^= h >> 15;
-    }
-    return h * 0x85ebca6bu;
-}
 
 // Keeps a share of the samples, chosen by lot; the share is returned.
 double thin_out(std::vector<Sample>& samples) {
@@ -98,7 +90,7 @@ std::array<std::vector<Sample>, 2> gather(const PointGrid& grid, const ScanScale
             for (int k = 0; k < 2; ++k) {
                 const double u = v.dot(f.d[k]), z = v.dot(f.n[k]);
                 if (u >= w.band && u <= w.away && std::abs(z) <= base + slope * u) {
-                    samples[static_cast<std::size_t>(k)].push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), draw_lot(q)});
+                    samples[static_cast<std::size_t>(k)].push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), lot_of(q)});
                 }
             }
         }
