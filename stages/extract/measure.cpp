@@ -190,6 +190,7 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
 // fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they are sure of.
 bool is_joint(const ScanScale& scale, const std::vector<TrackPoint>& way, std::size_t places) {
     constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6;
+    const double exact = 0.02 * scale.spacing;      // what counts as none where a scan has no noise
     std::vector<double> away, rough, jump, sigma;
     for (std::size_t i = 1; i + 1 < way.size(); ++i) {
         if (!way[i].modelled) {
@@ -202,7 +203,8 @@ bool is_joint(const ScanScale& scale, const std::vector<TrackPoint>& way, std::s
         }
     }
     return way.size() >= 6 && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth * scale.spacing &&
-           quantile(rough, 0.5) <= kMostRough * scale.noise && quantile(jump, 0.5) <= kMostJump * quantile(sigma, 0.5);
+           quantile(rough, 0.5) <= kMostRough * std::max(scale.noise, exact) &&
+           quantile(jump, 0.5) <= kMostJump * std::max(quantile(sigma, 0.5), exact);
 }
 
 }  // namespace

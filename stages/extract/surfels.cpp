@@ -11,6 +11,7 @@ namespace seampath::detail {
 namespace {
 
 constexpr std::size_t kLeastNeighbours = 6;
+constexpr double kClear = 0.15;     // share of deciding rays that leaves no doubt; strays over a table decide fewer
 constexpr double kTouch = 1.8;      // cells; means of cells that share a corner are mostly nearer
 
 void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
@@ -160,8 +161,9 @@ void make_consistent(Surfels& surfels) {
     }
 }
 
-// Per piece: how many more of its normals are free than of their opposites. One ray in fifty must decide.
-void turn_outwards(Surfels& surfels, const PointGrid& grid) {
+// Per piece: how many more of its normals are free than of their opposites. One ray in fifty must decide. Returns the share
+// of deciding rays in the largest piece.
+double turn_outwards(Surfels& surfels, const PointGrid& grid) {
     std::vector<Surfel>& at = surfels.at;
     const Eigen::Vector3d low = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
     const Eigen::Vector3d high = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
@@ -187,6 +189,8 @@ void turn_outwards(Surfels& surfels, const PointGrid& grid) {
             s.n = -s.n;
         }
     }
+    const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
+    return std::abs(votes[static_cast<std::size_t>(largest)]) * static_cast<double>(stride) / size[static_cast<std::size_t>(largest)];
 }
 
 // The plane that holds most surfels: the plate that the part is, or the table that it lies on.
@@ -213,7 +217,8 @@ MainPlane main_plane(const Surfels& surfels, double reach) {
 
 // Where one plane is much of the scan and nearly all else lies on one side of it, that side is the air: parts stand on plates
 // and tables, and nothing is seen through them. Pieces without a share in the plane keep their turn.
-bool turn_to_side_of_main_plane(Surfels& surfels, double cell) {
+bool turn_to_side_of_main_plane(Surfels& surfels, const PointGrid& grid) {
+    const double cell = grid.cell();
     constexpr double kMain = 0.25, kOneSide = 0.85;
     MainPlane plane = main_plane(surfels, cell);
     double above = 0, below = 0;
@@ -228,6 +233,17 @@ bool turn_to_side_of_main_plane(Surfels& surfels, double cell) {
     if (below > above) {
         plane.n = -plane.n;
         plane.d = -plane.d;
+    }
+    // The other face of a plate lies behind all of it; what stands on a plate, before a part of it.
+    std::size_t members = 0, covered = 0;
+    for (std::size_t i = 0; i < surfels.at.size(); i += 7) {
+        if (plane.holds(surfels.at[i], grid.cell())) {
+            ++members;
+            covered += blocked(grid, surfels.at[i].p, plane.n, 2 * grid.cell(), 400 * grid.cell());
+        }
+    }
+    if (2 * covered > members) {
+        return false;
     }
     std::vector<double> sum(surfels.at.size(), 0);
     for (const Surfel& s : surfels.at) {
@@ -283,9 +299,9 @@ void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
         return;
     }
     make_consistent(surfels);
-    turn_outwards(surfels, grid);
+    const double clearness = turn_outwards(surfels, grid);
     const auto open = std::count_if(surfels.at.begin(), surfels.at.end(), [](const Surfel& s) { return !s.decided; });
-    if (turn_to_side_of_main_plane(surfels, grid.cell())) {
+    if (clearness < kClear && turn_to_side_of_main_plane(surfels, grid)) {
         surfels.orientation_reason = "air side is the side of the main plane on which the rest of the scan lies";
     } else if (2 * static_cast<std::size_t>(open) < surfels.at.size()) {
         surfels.orientation_reason = "air side is the one to which the surfaces are open";

@@ -34,7 +34,8 @@ Surfels make_surfels(const PointGrid& grid, double radius);
 /// Turns all normals to the side of the air: by the sensor's place or the file's normals if there are any; otherwise
 /// normals are made consistent over each connected piece (minimum spanning tree, Hoppe et al. 1992) and each piece is turned
 /// so that fewer of its normals run into other parts of the scan: what a scanner saw is open to the outside, and the inside
-/// of a box, web or pipe is not. False when a piece gave no evidence; then either side may be the air.
+/// of a box, web or pipe is not. Where few rays decide, a plane that is much of the scan with all else on one side of it does. A
+/// piece of which nothing told is left as it is and marked as not decided.
 void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan);
 
 }  // namespace seampath::detail

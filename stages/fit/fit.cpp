@@ -81,14 +81,13 @@ void solve_control(CubicBSpline& curve, const Data& data, const std::vector<doub
     }
 }
 
-// Least squares of the orthogonal distances: control points and foot points in turn. `robust` puts Tukey weights on
-// distance / sigma; not while the knots are still too few to follow the seam: its bends would pass for outliers.
-CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool periodic, bool robust, std::vector<double>& residual) {
+// Least squares of the orthogonal distances: control points and foot points in turn, Tukey weights on distance / sigma.
+CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool periodic, std::vector<double>& residual) {
     CubicBSpline curve = with_knots(breaks, periodic);
-    std::vector<double> trust(data.p.size(), 1);
+    std::vector<double> robust(data.p.size(), 1);
     residual.assign(data.p.size(), 0);
     for (int round = 0; round < kFootPointRounds; ++round) {
-        solve_control(curve, data, trust);
+        solve_control(curve, data, robust);
         std::vector<double> relative;
         for (std::size_t i = 0; i < data.p.size(); ++i) {
             // The ends of an open curve stay where the seam's ends are.
@@ -99,9 +98,9 @@ CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool 
             relative.push_back(residual[i] * data.weight[i]);
         }
         const double scale = std::max(1.0, 1.2 * quantile(relative, 0.5));
-        for (std::size_t i = 0; robust && i < data.p.size(); ++i) {
+        for (std::size_t i = 0; i < data.p.size(); ++i) {
             const double x = residual[i] * data.weight[i] / (kTukey * scale);
-            trust[i] = x < 1 ? (1 - x * x) * (1 - x * x) : 0;
+            robust[i] = x < 1 ? (1 - x * x) * (1 - x * x) : 0;
         }
     }
     return curve;
@@ -113,26 +112,33 @@ std::set<std::size_t> poor_spans(const Data& data, const std::vector<double>& re
     for (std::size_t i = 0; i < data.p.size(); ++i) {
         const auto above = std::upper_bound(breaks.begin(), breaks.end(), data.u[i]) - breaks.begin();
         const auto span = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(breaks.size()) - 2));
-        const double r = residual[i] * data.weight[i];
+        const double r = std::min(residual[i] * data.weight[i], 5.0);
         square[span] += r * r;
         count[span] += 1;
     }
     std::set<std::size_t> poor;
     for (std::size_t span = 0; span + 1 < breaks.size(); ++span) {
-        if (count[span] >= 4 && std::sqrt(square[span] / count[span]) > limit) {
+        if (count[span] >= 6 && std::sqrt(square[span] / count[span]) > limit) {
             poor.insert(span);
         }
     }
     return poor;
 }
 
-// Every few nodes to begin with: a cubic follows a bend that takes several chords.
-std::vector<double> first_breaks(const std::vector<double>& u, const Nodes& nodes, bool closed) {
-    constexpr std::size_t kChordsPerSpan = 3;
+// Every few nodes to begin with: a cubic follows a bend that takes several chords, but hardly more than a third of a right
+// angle; what it can't follow at all would pass for outliers.
+std::vector<double> first_breaks(const Seam& seam, const std::vector<double>& u, const Nodes& nodes, bool closed) {
+    constexpr std::size_t kChordsPerSpan = 4;
+    constexpr double kCosMostTurn = 0.87;      // 30 degrees
     std::vector<double> breaks{u.front()};
-    const std::size_t inner = nodes.index.size();
-    for (std::size_t k = kChordsPerSpan; k + kChordsPerSpan / 2 < inner; k += kChordsPerSpan) {
-        breaks.push_back(u[nodes.index[k]]);
+    const auto chord = [&](std::size_t k) { return (seam.points[nodes.index[k]].p - seam.points[nodes.index[k - 1]].p).normalized().eval(); };
+    std::size_t last = 0;
+    for (std::size_t k = 1; k + 1 < nodes.index.size(); ++k) {
+        const bool turned = chord(last + 1).dot(chord(k + 1)) < kCosMostTurn;
+        if (u[nodes.index[k]] > breaks.back() && (turned || (k - last >= kChordsPerSpan && k + kChordsPerSpan / 2 < nodes.index.size()))) {
+            breaks.push_back(u[nodes.index[k]]);
+            last = k;
+        }
     }
     breaks.push_back(u.back());
     while (closed && breaks.size() < kLeastSpans + 1) {
@@ -187,7 +193,7 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
     }
     Data data;
     data.u = chord_length(seam);
-    std::vector<double> breaks = first_breaks(data.u, nodes, seam.closed);
+    std::vector<double> breaks = first_breaks(seam, data.u, nodes, seam.closed);
     const double period = data.u.back();
     data.u.resize(seam.points.size());
     std::vector<double> sigma;
@@ -206,7 +212,7 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
     model.closed = seam.closed;
     while (true) {
         data.u = chord;
-        model.curve = orthogonal_fit(data, breaks, seam.closed, false, residual);
+        model.curve = orthogonal_fit(data, breaks, seam.closed, residual);
         const std::set<std::size_t> poor = poor_spans(data, residual, breaks, options.max_residual_sigma);
         if (poor.empty() || 2 * breaks.size() > seam.points.size()) {
             break;
@@ -220,8 +226,6 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
         }
         breaks = std::move(finer);
     }
-    data.u = chord;
-    model.curve = orthogonal_fit(data, breaks, seam.closed, true, residual);
     if (!(period > 0)) {
         throw InputError("fit: the seam has no length; all its points coincide; check the scan");
     }

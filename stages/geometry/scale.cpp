@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 #include <Eigen/Dense>
 
 #include "stages/geometry/grid.hpp"
-#include "stages/geometry/lot.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 
@@ -19,26 +19,36 @@ constexpr std::size_t kPlaces = 400;       // the median of so many is stable to
 constexpr std::size_t kNeighbours = 16;
 
 struct Bulk {
-    Eigen::Vector3d middle;
-    double extent = 0;      // mm, of the longest axis without the outer 2 % at both ends
+    Eigen::Vector3d middle{0, 0, 0};
+    double extent = 0;      // mm, of the longest axis, without what lies four standard deviations off
 };
 
 Bulk bulk_of(std::span<const Eigen::Vector3f> points) {
+    constexpr int kRounds = 12;
+    constexpr double kClip = 4;      // standard deviations
     Bulk bulk;
-    // A sample by lot, some thousands: the order of the points must not matter.
-    const auto limit = static_cast<std::uint32_t>(std::min(1.0, 8192.0 / static_cast<double>(points.size())) * 4294967295.0);
-    std::vector<double> x[3];
-    for (const Eigen::Vector3f& p : points) {
-        if (lot_of(p) <= limit) {
-            for (int axis = 0; axis < 3; ++axis) {
-                x[axis].push_back(p[axis]);
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(-std::numeric_limits<double>::max()), high = -low;
+    for (int round = 0; round < kRounds; ++round) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+        double count = 0;
+        for (const Eigen::Vector3f& p : points) {
+            const Eigen::Vector3d x = p.cast<double>();
+            if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) {
+                const Eigen::Vector3d d = x - bulk.middle;
+                sum += d;
+                squares += d.cwiseProduct(d);
+                count += 1;
             }
         }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        const double low = quantile(x[axis], 0.02), high = quantile(x[axis], 0.98);
-        bulk.middle[axis] = 0.5 * (low + high);
-        bulk.extent = std::max(bulk.extent, high - low);
+        const Eigen::Vector3d mean = sum / count, deviation = (squares / count - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
+        bulk.middle += mean;
+        const double before = bulk.extent;
+        bulk.extent = std::sqrt(12.0) * deviation.maxCoeff();      // of points spread evenly
+        low = bulk.middle - Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
+        high = bulk.middle + Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
+        if (round > 0 && std::abs(before - bulk.extent) <= 1e-3 * bulk.extent) {
+            break;
+        }
     }
     return bulk;
 }

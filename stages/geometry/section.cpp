@@ -30,7 +30,7 @@ struct Sample {
 };
 
 // More points than this to a flank add time and, their noise being shared, nothing to the fit: lots are drawn.
-constexpr std::size_t kEnoughPoints = 1600;
+constexpr std::size_t kEnoughPoints = 12000;
 
 // Keeps a share of the samples, chosen by lot; the share is returned.
 double thin_out(std::vector<Sample>& samples) {

@@ -117,7 +117,8 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
             sigma.push_back(sample.sigma_mm);
         }
     }
-    const double most_sigma = kMostSigma * quantile(sigma, 0.5);
+    // What is sure to a quarter of the tolerance is a measurement, however much surer the rest of the seam is.
+    const double most_sigma = std::max(kMostSigma * quantile(sigma, 0.5), 0.25 * result.tolerance_mm);
     for (DeviationSample& sample : result.samples) {
         sample.covered = sample.covered && sample.sigma_mm <= most_sigma;
     }
