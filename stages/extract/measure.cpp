@@ -10,6 +10,8 @@
 namespace seampath::detail {
 namespace {
 
+constexpr std::size_t kLeastPlaces = 6;      // fewer carry no curve
+
 
 // Places at equal distances, along the polyline of the track; open tracks keep both ends.
 std::vector<TrackPoint> equal_steps(const Track& track, double step) {
@@ -202,7 +204,7 @@ bool is_joint(const ScanScale& scale, const std::vector<TrackPoint>& way, std::s
             sigma.push_back(way[i].sigma);
         }
     }
-    return way.size() >= 6 && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth * scale.spacing &&
+    return way.size() >= kLeastPlaces && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth * scale.spacing &&
            quantile(rough, 0.5) <= kMostRough * std::max(scale.noise, exact) &&
            quantile(jump, 0.5) <= kMostJump * std::max(quantile(sigma, 0.5), exact);
 }
@@ -220,6 +222,9 @@ std::optional<Seam> measure_track(const Tracker& following, const Track& track, 
     if (!track.closed && way.size() > 8) {
         place_end(tracker, way, false);
         place_end(tracker, way, true);
+    }
+    if (way.size() < kLeastPlaces) {
+        return std::nullopt;
     }
     Seam seam;
     seam.closed = track.closed;
