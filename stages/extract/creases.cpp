@@ -198,12 +198,12 @@ std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, co
 
 }  // namespace
 
-std::vector<Crease> find_creases(const Surfels& surfels, double noise) {
-    // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain.
-    const double tolerance = std::max(0.75 * noise, 0.025 * surfels.radius);
+std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field) {
     std::vector<std::optional<Crease>> found(surfels.at.size());
     parallel_for(surfels.at.size(), 64, [&](std::size_t i) {
         const Surfel& s = surfels.at[i];
+        // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain.
+        const double tolerance = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
         if (s.neighbours.size() < 20 || s.flatness < 0.75 * tolerance) {
             return;
         }

@@ -21,7 +21,7 @@ struct Crease {
     bool decided = true;            ///< whether `concave` is known; otherwise the normals may be the other way round
 };
 
-/// Robust two-plane fits at every surfel that is not flat, in the order of the surfels. `noise` is the scan's, mm.
-std::vector<Crease> find_creases(const Surfels& surfels, double noise);
+/// Robust two-plane fits at every surfel that is not flat, in the order of the surfels.
+std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field);
 
 }  // namespace seampath::detail

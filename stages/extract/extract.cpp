@@ -94,7 +94,8 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
                          std::to_string(kLeastPoints) + " are needed to fit two surfaces; scan the part with a finer pitch");
     }
     Extraction result;
-    const ScanScale scale = estimate_scale(scan.points);
+    const ScaleField field = estimate_scale(scan.points);
+    const ScanScale& scale = field.overall;
     result.spacing_mm = scale.spacing;
     result.noise_mm = scale.noise;
     if (scale.spacing <= 0) {
@@ -104,10 +105,9 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     Surfels surfels = make_surfels(grid, 4.5 * grid.cell());
     orient(surfels, grid, scan);
     result.orientation_reason = surfels.orientation_reason;
-    const std::vector<Crease> seeds = seeds_of(find_creases(surfels, scale.noise));
+    const std::vector<Crease> seeds = seeds_of(find_creases(surfels, field));
 
-    const SectionWindow window = following_window(scale);
-    const Tracker tracker{grid, scale, window, options.station_mm > 0 ? options.station_mm : grid.cell()};
+    const Tracker tracker{grid, field, following_window, options.station_mm > 0 ? options.station_mm : grid.cell()};
     const double least_length = options.min_length_mm > 0 ? options.min_length_mm : kLeastLength * scale.spacing;
     for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
         const double length = length_of(track);

@@ -49,13 +49,15 @@ TrackPoint between(const TrackPoint& a, const TrackPoint& b, double x) {
 bool flank_goes_through(const Tracker& tracker, const TrackPoint& place, double density) {
     const Section& at = place.section;
     const Eigen::Vector3d d[2] = {place.t.cross(at.n1), at.n2.cross(place.t)}, n[2] = {at.n1, at.n2};
-    const double band = 2 * tracker.window.band, far = 0.5 * tracker.window.away, slab = tracker.step;
+    const ScanScale scale = tracker.scale_at(at);
+    const SectionWindow window = tracker.window_of(scale);
+    const double band = 2 * window.band, far = 0.5 * window.away, slab = tracker.step;
     for (int k = 0; k < 2; ++k) {
         double beyond = 0;
         tracker.grid.for_points_in_ball(at.p, std::hypot(far, slab), [&](const Eigen::Vector3f& q, double) {
             const Eigen::Vector3d v = q.cast<double>() - at.p;
             const double u = v.dot(d[k]), z = std::abs(v.dot(n[k]));
-            beyond += u < -band && u > -far && std::abs(v.dot(place.t)) < slab && z < 4 * tracker.scale.noise + 0.1 * std::abs(u);
+            beyond += u < -band && u > -far && std::abs(v.dot(place.t)) < slab && z < 4 * scale.noise + 0.1 * std::abs(u);
         });
         if (beyond > 0.3 * density * 2 * slab * (far - band)) {
             return true;
@@ -77,14 +79,14 @@ std::optional<Bridge> bridge(const Tracker& tracker, const Track& from, const Tr
     const double gap = chord.norm();
     const double supported = length_of(from) + (same ? 0 : length_of(to));
     const double leave = angle(a.t, chord), arrive = angle(chord, b.t);
-    if (gap > kMostWindows * tracker.window.away || gap > kMostShare * supported || std::max(leave, arrive) > kMostAngle ||
+    if (gap > kMostWindows * tracker.window_at(a.section).away || gap > kMostShare * supported || std::max(leave, arrive) > kMostAngle ||
         std::abs(leave - arrive) > kMostAsymmetry + 4 * tracker.step / (gap + tracker.step) * 0.1 ||
         angle(a.section.n1, b.section.n1) > kMostTwist || angle(a.section.n2, b.section.n2) > kMostTwist) {
         return std::nullopt;
     }
     Bridge result;
     result.cost = gap * (1 + leave + arrive);
-    const double density = 1 / (tracker.scale.spacing * tracker.scale.spacing);
+    const double spacing = tracker.scale_at(a.section).spacing, density = 1 / (spacing * spacing);
     const int count = static_cast<int>(std::lround(gap / tracker.step));
     int through = 0;
     for (int i = 1; i < count; ++i) {

@@ -62,7 +62,8 @@ double end_of(const std::vector<double>& ahead, double bin, double look) {
 // may end at a slant: the ends of strips at growing distance from the seam are carried on to the seam by a straight line.
 double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direction, double look) {
     constexpr int kStrips = 4;
-    const auto fit = fit_section(tracker.grid, tracker.scale, place.section, tracker.window);
+    const ScanScale scale = tracker.scale_at(place.section);
+    const auto fit = fit_section(tracker.grid, scale, place.section, tracker.window_of(scale));
     if (!fit) {
         return 0;
     }
@@ -73,7 +74,7 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
     for (int k = 0; k < 2; ++k) {
         const Flank& flank = fit->flank[k];
         // Near the seam: a slanted end must still lie ahead in every strip.
-        const double near = flank.window.band, strip = std::min(flank.window.away - near, 16 * tracker.scale.spacing) / kStrips;
+        const double near = flank.window.band, strip = std::min(flank.window.away - near, 16 * scale.spacing) / kStrips;
         std::array<std::vector<double>, kStrips> s;
         tracker.grid.for_points_in_ball(at.p, std::hypot(near + kStrips * strip, look), [&](const Eigen::Vector3f& q, double) {
             const Eigen::Vector3d v = q.cast<double>() - at.p;
@@ -81,7 +82,7 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
             if (x >= 0 && x <= look && u >= near && u < near + kStrips * strip) {
                 const double z = flank.fit.value(u / flank.window.away, direction * x / flank.window.along);
                 // Beyond the window the fitted quadric is a guess: let the gate open.
-                const double gate = 4 * tracker.scale.noise + 0.1 * std::max(0.0, x - flank.window.along);
+                const double gate = 4 * scale.noise + 0.1 * std::max(0.0, x - flank.window.along);
                 if (std::abs(v.dot(n[k]) - z) <= gate) {
                     s[static_cast<std::size_t>((u - near) / strip)].push_back(x);
                 }
@@ -90,7 +91,7 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
         // Least squares of end = a + b u over the strips; a is the end at the seam.
         double su = 0, se = 0, suu = 0, sue = 0, low = look, high = 0;
         for (int i = 0; i < kStrips; ++i) {
-            const double u = near + (i + 0.5) * strip, e = end_of(s[static_cast<std::size_t>(i)], 2 * tracker.scale.spacing, look);
+            const double u = near + (i + 0.5) * strip, e = end_of(s[static_cast<std::size_t>(i)], 2 * scale.spacing, look);
             su += u, se += e, suu += u * u, sue += u * e;
             low = std::min(low, e), high = std::max(high, e);
         }
@@ -112,11 +113,12 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     }
     const TrackPoint inner = way[way.size() - 1 - kInside];
     const double direction = front ? -1 : 1;
-    const double look = 3 * static_cast<double>(kInside) * tracker.step + tracker.window.along;
+    const double look = 3 * static_cast<double>(kInside) * tracker.step + tracker.window_at(inner.section).along;
+    const double spacing = tracker.scale_at(inner.section).spacing;
     // A point distance short of the edge: no torch should be sent over it.
-    const double reach = reach_ahead(tracker, inner, direction, look) - tracker.scale.spacing;
+    const double reach = reach_ahead(tracker, inner, direction, look) - spacing;
     const auto ahead = [&](const TrackPoint& p) { return direction * (p.section.p - inner.section.p).dot(inner.t); };
-    if (reach + tracker.scale.spacing >= look || reach > ahead(way.back()) + 10 * tracker.step) {
+    if (reach + spacing >= look || reach > ahead(way.back()) + 10 * tracker.step) {
         // The flanks go on: following ended for another reason, and that reason stands.
         if (front) {
             std::reverse(way.begin(), way.end());
@@ -141,6 +143,16 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     }
 }
 
+// Noise below this share of the spacing counts as none, where a scan is exact or quantised.
+double noise_at(const Tracker& tracker, const Section& place) {
+    const ScanScale scale = tracker.scale_at(place);
+    return std::max(scale.noise, 0.02 * scale.spacing);
+}
+
+// Hundreds of points that leave the seam less sure than two scan points do not see two surfaces: fits shrink to that in the
+// smooth valleys of bent or badly fused parts.
+bool unsure(const Tracker& tracker, const TrackPoint& point) { return point.sigma > 2 * noise_at(tracker, point.section); }
+
 // Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
 std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, const Tracker& tracker,
                                                      const std::vector<TrackPoint>& places) {
@@ -154,7 +166,7 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
     const double least[2] = {0.1 * quantile(support[0], 0.5), 0.1 * quantile(support[1], 0.5)};
     std::vector<std::optional<TrackPoint>> measured(places.size());
     const auto good = [&](const std::optional<TrackPoint>& point, const TrackPoint& place) {
-        return point && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale.noise &&
+        return point && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale_at(place.section).noise &&
                (!place.modelled || (point->support[0] >= least[0] && point->support[1] >= least[1]));
     };
     parallel_for(places.size(), 4, [&](std::size_t i) {
@@ -162,7 +174,7 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
         if (!good(measured[i], places[i])) {
             measured[i] = following.measure(places[i].section, 3);      // a narrow place: what followed it can measure it
         }
-        if (!good(measured[i], places[i])) {
+        if (!good(measured[i], places[i]) || unsure(tracker, *measured[i])) {
             measured[i] = places[i].modelled ? std::optional(places[i]) : std::nullopt;
         }
     });
@@ -190,33 +202,31 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
 
 // A joint has two smooth flanks wider than its own corner, and lies where its points say. Noise, facets and layers of a badly
 // fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they are sure of.
-bool is_joint(const ScanScale& scale, const std::vector<TrackPoint>& way, std::size_t places) {
+bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t places) {
     constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6;
-    const double exact = 0.02 * scale.spacing;      // what counts as none where a scan has no noise
-    std::vector<double> away, rough, jump, sigma;
+    std::vector<double> away, rough, jump, sigma;      // the first two in spacings and noises of the place
     for (std::size_t i = 1; i + 1 < way.size(); ++i) {
         if (!way[i].modelled) {
             // Across the seam only: places may lie closer or further apart along it.
             const Eigen::Vector3d d = way[i - 1].section.p - 2 * way[i].section.p + way[i + 1].section.p;
             jump.push_back((d - d.dot(way[i].t) * way[i].t).norm());
-            away.push_back(way[i].away);
-            rough.push_back(way[i].rough);
-            sigma.push_back(way[i].sigma);
+            away.push_back(way[i].away / tracker.scale_at(way[i].section).spacing);
+            rough.push_back(way[i].rough / noise_at(tracker, way[i].section));
+            sigma.push_back(std::max(way[i].sigma, 0.02 * tracker.scale_at(way[i].section).spacing));
         }
     }
-    return way.size() >= kLeastPlaces && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth * scale.spacing &&
-           quantile(rough, 0.5) <= kMostRough * std::max(scale.noise, exact) &&
-           quantile(jump, 0.5) <= kMostJump * std::max(quantile(sigma, 0.5), exact);
+    return way.size() >= kLeastPlaces && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth &&
+           quantile(rough, 0.5) <= kMostRough && quantile(jump, 0.5) <= kMostJump * quantile(sigma, 0.5);
 }
 
 }  // namespace
 
 std::optional<Seam> measure_track(const Tracker& following, const Track& track, const Eigen::Vector3d& origin) {
     Tracker tracker = following;
-    tracker.window = measuring_window(following.scale);
+    tracker.window_of = measuring_window;
     const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
     std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places));
-    if (!is_joint(tracker.scale, way, places.size())) {
+    if (!is_joint(tracker, way, places.size())) {
         return std::nullopt;
     }
     if (!track.closed && way.size() > 8) {

@@ -34,7 +34,7 @@ bool supported(const std::vector<TrackPoint>& way, const TrackPoint& point) {
 }
 
 bool believable(const Tracker& tracker, const Section& predicted, const TrackPoint& point) {
-    const double reach = 0.7 * tracker.step + 3 * tracker.scale.noise + 4 * point.sigma;
+    const double reach = 0.7 * tracker.step + 3 * tracker.scale_at(predicted).noise + 4 * point.sigma;
     return point.bend >= kLeastBend && (point.section.p - predicted.p).norm() <= reach &&
            similar(point.section.n1, predicted.n1, kMostTurn) && similar(point.section.n2, predicted.n2, kMostTurn);
 }
@@ -77,7 +77,8 @@ End advance(const Tracker& tracker, std::vector<TrackPoint>& way, double directi
 }  // namespace
 
 std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) const {
-    const auto fit = settle_section(grid, scale, guess, window, rounds);
+    const ScanScale scale = scale_at(guess);
+    const auto fit = settle_section(grid, scale, guess, window_of(scale), rounds);
     if (!fit) {
         return std::nullopt;
     }

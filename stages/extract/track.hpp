@@ -29,9 +29,12 @@ struct Track {
 /// What following needs to know of the scan.
 struct Tracker {
     const PointGrid& grid;
-    ScanScale scale;
-    SectionWindow window;
-    double step = 0;          ///< mm between track points
+    const ScaleField& field;
+    SectionWindow (*window_of)(const ScanScale&);      ///< to follow with, or to measure with
+    double step = 0;                                   ///< mm between track points
+
+    ScanScale scale_at(const Section& place) const { return field.at(place.p); }
+    SectionWindow window_at(const Section& place) const { return window_of(scale_at(place)); }
 
     std::optional<TrackPoint> measure(const Section& guess, int rounds) const;
 };

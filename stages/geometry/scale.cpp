@@ -136,20 +136,75 @@ Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) 
     return {true, fit.scale(), block_correlation(fit)};
 }
 
-std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places, double radius) {
+std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places, const std::vector<double>& radius) {
     std::vector<Patch> patches(places.size());
-    parallel_for(places.size(), 16, [&](std::size_t k) { patches[k] = fit_patch(grid, places[k], radius); });
-    std::erase_if(patches, [](const Patch& patch) { return !patch.valid; });
+    parallel_for(places.size(), 16, [&](std::size_t k) { patches[k] = fit_patch(grid, places[k], radius[k]); });
     return patches;
 }
 
-// Places on edges are rough for another reason: look below the median.
-double typical_scale(const std::vector<Patch>& patches) {
+std::vector<double> times(double factor, std::vector<double> values) {
+    for (double& x : values) {
+        x *= factor;
+    }
+    return values;
+}
+
+// Of the patches' residual scales, each divided by its unit. Places on edges are rough for another reason: look below the
+// median.
+double typical_scale(const std::vector<Patch>& patches, const std::vector<double>& unit) {
     std::vector<double> scales;
-    for (const Patch& patch : patches) {
-        scales.push_back(patch.scale);
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        if (patches[k].valid) {
+            scales.push_back(patches[k].scale / unit[k]);
+        }
     }
     return quantile(scales, 0.4);
+}
+
+// Wide balls show noise that neighbours share over more than its own range. Only the smooth ones count; what they see as
+// noise is less biased than what a small ball leaves, too.
+void refine_by_wide_balls(ScanScale& overall, const std::vector<Patch>& wide) {
+    const std::vector<double> one(wide.size(), 1);
+    const double smooth = 1.3 * typical_scale(wide, one);
+    std::vector<double> scales, correlations;
+    for (const Patch& patch : wide) {
+        if (patch.valid && patch.scale <= smooth && patch.correlation > 0) {
+            scales.push_back(patch.scale);
+            correlations.push_back(patch.correlation);
+        }
+    }
+    // On a part with no smooth place of that size the smaller balls have to do.
+    const double wide_noise = quantile(scales, 0.5);
+    if (!scales.empty() && wide_noise < 2 * overall.noise) {
+        overall.noise = std::max(overall.noise, wide_noise);
+        overall.correlation = std::clamp(quantile(correlations, 0.5), 1.0, 60.0);
+    }
+}
+
+// Each place by what its nearest ones say together: single patches hang on a hundred points, some of them across an edge.
+std::vector<ScanScale> smoothed(const ScaleField& field, const std::vector<double>& spacing, const std::vector<Patch>& patches, double noise_factor) {
+    constexpr std::size_t kNearest = 13;
+    std::vector<ScanScale> local(field.place.size(), field.overall);
+    parallel_for(local.size(), 16, [&](std::size_t k) {
+        std::vector<std::pair<double, std::size_t>> near;
+        for (std::size_t j = 0; j < field.place.size(); ++j) {
+            near.emplace_back((field.place[j] - field.place[k]).squaredNorm(), j);
+        }
+        const std::size_t count = std::min(kNearest, near.size());
+        std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+        std::vector<double> spacings, scales;
+        for (std::size_t i = 0; i < count; ++i) {
+            spacings.push_back(spacing[near[i].second]);
+            if (patches[near[i].second].valid) {
+                scales.push_back(patches[near[i].second].scale);
+            }
+        }
+        local[k].spacing = quantile(spacings, 0.5);
+        if (!scales.empty()) {
+            local[k].noise = noise_factor * quantile(scales, 0.4);
+        }
+    });
+    return local;
 }
 
 }  // namespace
@@ -166,14 +221,28 @@ std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points
     return kept == points.size() ? std::vector<std::uint8_t>{} : keep;
 }
 
-ScanScale estimate_scale(std::span<const Eigen::Vector3f> points) {
-    ScanScale scale;
+ScanScale ScaleField::at(const Eigen::Vector3d& p) const {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < place.size(); ++k) {
+        const double squared = (place[k] - p).squaredNorm();
+        if (squared < least) {
+            least = squared;
+            nearest = k;
+        }
+    }
+    return place.empty() ? overall : local[nearest];
+}
+
+ScaleField estimate_scale(std::span<const Eigen::Vector3f> points) {
+    ScaleField field;
+    ScanScale& overall = field.overall;
     const double extent = points.size() < 50 ? 0 : bulk_of(points).extent;
     if (extent <= 0) {
-        return scale;
+        return field;
     }
     const PointGrid grid(points, extent / 128, without_strays(points));
-    std::vector<Eigen::Vector3d> places;
+    std::vector<Eigen::Vector3d>& places = field.place;
     for (std::size_t k = 0; k < kPlaces; ++k) {
         // Through the points in the order of space, so that the choice does not hang on the order of the file.
         places.push_back(grid.mean((2 * k + 1) * grid.cells() / (2 * kPlaces)));
@@ -182,37 +251,37 @@ ScanScale estimate_scale(std::span<const Eigen::Vector3f> points) {
     parallel_for(places.size(), 16, [&](std::size_t k) {
         spacing[k] = neighbour_distance(grid, places[k], extent) * std::sqrt(std::numbers::pi / kNeighbours);
     });
-    scale.spacing = quantile(spacing, 0.5);
-    double radius = 6 * scale.spacing;
+    std::vector<double> sorted = spacing;
+    overall.spacing = quantile(sorted, 0.5);
+    if (overall.spacing <= 0) {
+        return field;
+    }
+    // Balls as wide as six point distances, each by its own; where noise exceeds the spacing a wider one is needed to see
+    // a surface.
+    for (double& h : spacing) {
+        h = std::max(h, 1e-3 * overall.spacing);
+    }
+    double widths = 6, ratio = 0;
+    std::vector<Patch> patches;
     for (int round = 0; round < 4; ++round) {
-        scale.noise = typical_scale(fit_patches(grid, places, radius));
-        if (6 * scale.noise <= radius) {
+        patches = fit_patches(grid, places, times(widths, spacing));
+        ratio = typical_scale(patches, spacing);
+        if (6 * ratio <= widths) {
             break;
         }
-        radius = 8 * scale.noise;      // where noise exceeds the spacing a wider ball is needed to see a surface
+        widths = 8 * ratio;
     }
-    // Correlated noise shows over more than its own range: wider balls, and of those the ones that are still smooth. What
-    // such a ball sees as noise is also less biased than what a small one leaves.
+    const std::vector<double> one(places.size(), 1);
+    const double small_ball_noise = overall.noise = typical_scale(patches, one);
     std::vector<Eigen::Vector3d> fewer;
+    std::vector<double> wide_radius;
     for (std::size_t k = 0; k < places.size(); k += 2) {
         fewer.push_back(places[k]);
+        wide_radius.push_back(4.5 * widths * spacing[k]);
     }
-    const std::vector<Patch> wide = fit_patches(grid, fewer, 4.5 * radius);
-    const double smooth = 1.3 * typical_scale(wide);
-    std::vector<double> scales, correlations;
-    for (const Patch& patch : wide) {
-        if (patch.scale <= smooth && patch.correlation > 0) {
-            scales.push_back(patch.scale);
-            correlations.push_back(patch.correlation);
-        }
-    }
-    // On a part with no smooth place of that size the smaller balls have to do.
-    const double wide_noise = quantile(scales, 0.5);
-    if (!scales.empty() && wide_noise < 2 * scale.noise) {
-        scale.noise = std::max(scale.noise, wide_noise);
-        scale.correlation = std::clamp(quantile(correlations, 0.5), 1.0, 60.0);
-    }
-    return scale;
+    refine_by_wide_balls(overall, fit_patches(grid, fewer, wide_radius));
+    field.local = smoothed(field, spacing, patches, small_ball_noise > 0 ? overall.noise / small_ball_noise : 1);
+    return field;
 }
 
 }  // namespace seampath

@@ -19,7 +19,18 @@ struct ScanScale {
 /// the end of the world must not set the size of a grid's cells.
 std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points);
 
-/// Median over some hundred places spread over the scan. Fewer than 50 points: both are 0.
-ScanScale estimate_scale(std::span<const Eigen::Vector3f> points);
+/// The scale of a scan as a whole and place by place: a depth camera's points lie twice as far apart and are four times as
+/// noisy at twice the distance, and a surface seen at a slant is sparser than one seen square.
+struct ScaleField {
+    ScanScale overall;                       ///< median over the places; spacing and noise 0 for fewer than 50 points
+    std::vector<Eigen::Vector3d> place;      ///< mm, spread over the scan
+    std::vector<ScanScale> local;            ///< of each place, smoothed over its nearest ones
+
+    /// Of the nearest place; p in the frame of the points.
+    ScanScale at(const Eigen::Vector3d& p) const;
+};
+
+/// Looks at some hundred places spread over the scan.
+ScaleField estimate_scale(std::span<const Eigen::Vector3f> points);
 
 }  // namespace seampath

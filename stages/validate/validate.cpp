@@ -37,6 +37,18 @@ PointGrid grid_near(const Scan& scan, const ArcLength& arc, double reach) {
     return {scan.points, reach / 8, keep};
 }
 
+// The middle of what the scale is along the seam: one tolerance and one window for a seam, by the part of the scan it lies in.
+ScanScale scale_along(const ScaleField& field, const ArcLength& arc, const Eigen::Vector3d& origin) {
+    constexpr int kPlaces = 25;
+    std::vector<double> spacing, noise;
+    for (int i = 0; i < kPlaces; ++i) {
+        const ScanScale here = field.at(position(arc.curve(), arc.parameter(arc.length() * (i + 0.5) / kPlaces)) - origin);
+        spacing.push_back(here.spacing);
+        noise.push_back(here.noise);
+    }
+    return {quantile(spacing, 0.5), quantile(noise, 0.5), field.overall.correlation};
+}
+
 double signed_distance(const Flank& flank) {
     const auto& c = flank.fit.coefficients();
     const double du = c[1] / flank.window.away, ds = c[2] / flank.window.along;
@@ -81,12 +93,13 @@ Fields describe(ValidateOptions& o) {
 }
 
 Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options) {
-    const ScanScale scale = estimate_scale(scan.points);
-    if (scale.spacing <= 0) {
+    const ScaleField field = estimate_scale(scan.points);
+    if (field.overall.spacing <= 0) {
         throw InputError("validate: the scan has " + std::to_string(scan.points.size()) + " points; surfaces were needed; use the scan that the seam came from");
     }
-    const SectionWindow window = measuring_window(scale);
     const ArcLength arc(model.curve);
+    const ScanScale scale = scale_along(field, arc, scan.origin_mm);
+    const SectionWindow window = measuring_window(scale);
     const PointGrid grid = grid_near(scan, arc, 1.3 * window.away);
     const auto count = std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
     Deviation result;

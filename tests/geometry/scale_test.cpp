@@ -50,7 +50,7 @@ std::vector<Eigen::Vector3f> correlated_plane(double pitch, double sigma, double
 TEST(ScanScale, RecoversSpacingAndNoiseOfAPlane) {
     for (const double pitch : {0.1, 0.3, 2.0}) {
         for (const double share : {0.05, 0.15, 0.5}) {
-            const ScanScale scale = estimate_scale(plane(pitch, share * pitch));
+            const ScanScale scale = estimate_scale(plane(pitch, share * pitch)).overall;
             EXPECT_NEAR(scale.spacing, pitch, 0.1 * pitch);
             EXPECT_NEAR(scale.noise, share * pitch, 0.05 * share * pitch) << "pitch " << pitch;
             EXPECT_LT(scale.correlation, 1.5) << "of white noise, pitch " << pitch;
@@ -59,18 +59,18 @@ TEST(ScanScale, RecoversSpacingAndNoiseOfAPlane) {
 }
 
 TEST(ScanScale, SeesNoiseLargerThanTheSpacing) {
-    const ScanScale scale = estimate_scale(plane(0.3, 0.9));
+    const ScanScale scale = estimate_scale(plane(0.3, 0.9)).overall;
     EXPECT_NEAR(scale.noise, 0.9, 0.1);
 }
 
 TEST(ScanScale, OfExactPointsHasNoNoise) {
-    EXPECT_LT(estimate_scale(plane(0.3, 0)).noise, 1e-5);
+    EXPECT_LT(estimate_scale(plane(0.3, 0)).overall.noise, 1e-5);
 }
 
 TEST(ScanScale, TellsCorrelatedNoiseFromWhite) {
-    const ScanScale white = estimate_scale(correlated_plane(0.3, 0.05, 1e-3));
-    const ScanScale narrow = estimate_scale(correlated_plane(0.3, 0.05, 0.8));
-    const ScanScale wide = estimate_scale(correlated_plane(0.3, 0.05, 1.2));
+    const ScanScale white = estimate_scale(correlated_plane(0.3, 0.05, 1e-3)).overall;
+    const ScanScale narrow = estimate_scale(correlated_plane(0.3, 0.05, 0.8)).overall;
+    const ScanScale wide = estimate_scale(correlated_plane(0.3, 0.05, 1.2)).overall;
     EXPECT_LT(white.correlation, 1.5);
     // The variance of a mean over many pixels grows by 4 pi width^2.
     EXPECT_NEAR(narrow.correlation, 4 * 3.1416 * 0.8 * 0.8, 0.4 * 4 * 3.1416 * 0.8 * 0.8);
@@ -85,25 +85,44 @@ TEST(ScanScale, IsThatOfTheSurfaceInSpiteOfStrayPoints) {
     for (int i = 0; i < 30; ++i) {
         points.emplace_back(1000.f * static_cast<float>(i), -500.f, 3000.f);
     }
-    const ScanScale scale = estimate_scale(points);
+    const ScanScale scale = estimate_scale(points).overall;
     EXPECT_NEAR(scale.spacing, 0.3, 0.04);
     EXPECT_NEAR(scale.noise, 0.045, 0.005);
 }
 
 TEST(ScanScale, OfAFewPointsOrOfOnePlaceIsNothing) {
-    EXPECT_EQ(estimate_scale(std::vector<Eigen::Vector3f>(49, Eigen::Vector3f(1, 2, 3))).spacing, 0);
-    EXPECT_EQ(estimate_scale(std::vector<Eigen::Vector3f>(5000, Eigen::Vector3f(1, 2, 3))).spacing, 0);
+    EXPECT_EQ(estimate_scale(std::vector<Eigen::Vector3f>(49, Eigen::Vector3f(1, 2, 3))).overall.spacing, 0);
+    EXPECT_EQ(estimate_scale(std::vector<Eigen::Vector3f>(5000, Eigen::Vector3f(1, 2, 3))).overall.spacing, 0);
 }
 
 TEST(ScanScale, ScalesWithTheScan) {
     auto points = plane(0.3, 0.045);
-    const ScanScale one = estimate_scale(points);
+    const ScanScale one = estimate_scale(points).overall;
     for (auto& p : points) {
         p *= 1000;
     }
-    const ScanScale thousand = estimate_scale(points);
+    const ScanScale thousand = estimate_scale(points).overall;
     EXPECT_NEAR(thousand.spacing, 1000 * one.spacing, 0.1 * one.spacing);
     EXPECT_NEAR(thousand.noise, 1000 * one.noise, 10 * one.noise);
+}
+
+TEST(ScaleField, SaysWhereTheScanIsCoarserAndNoisier) {
+    // As a depth camera sees a near plate and one behind it: twice the pitch, four times the noise.
+    auto points = plane(0.3, 0.045);
+    for (const Eigen::Vector3f& p : plane(0.6, 0.18)) {
+        points.push_back(p + Eigen::Vector3f(0, 0, 300));
+    }
+    const ScaleField field = estimate_scale(points);
+    int near = 0;
+    for (std::size_t k = 0; k < field.place.size(); ++k) {
+        const bool behind = field.place[k].z() > 180;
+        const ScanScale here = field.at(field.place[k]);
+        EXPECT_NEAR(here.spacing, behind ? 0.6 : 0.3, behind ? 0.06 : 0.03);
+        EXPECT_NEAR(here.noise, behind ? 0.18 : 0.045, behind ? 0.04 : 0.01);
+        near += !behind;
+    }
+    EXPECT_GT(near, 40);
+    EXPECT_LT(near, 360);
 }
 
 }  // namespace
