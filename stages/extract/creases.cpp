@@ -202,17 +202,22 @@ std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field
     std::vector<std::optional<Crease>> found(surfels.at.size());
     parallel_for(surfels.at.size(), 64, [&](std::size_t i) {
         const Surfel& s = surfels.at[i];
-        // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain.
-        const double tolerance = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
-        if (s.neighbours.size() < 20 || s.flatness < 0.75 * tolerance) {
+        // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain. One of two surfaces
+        // may be seen at a slant, and be noisier than the place as a whole.
+        const double least = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
+        if (s.neighbours.size() < 20 || s.flatness < 0.75 * least) {
             return;
         }
         Points x;
         for (const std::uint32_t j : s.neighbours) {
             x.push_back(surfels.at[j].p - s.p);
         }
-        if (const auto split = two_planes(x, surfels.radius, tolerance, i)) {
-            found[i] = as_crease(surfels, s, x, *split);
+        for (const double tolerance : {least, 2 * least}) {
+            const auto split = two_planes(x, surfels.radius, tolerance, i);
+            found[i] = split ? as_crease(surfels, s, x, *split) : std::nullopt;
+            if (found[i] || s.flatness < 0.75 * 2 * least) {
+                return;
+            }
         }
     });
     std::vector<Crease> creases;

@@ -79,4 +79,17 @@ bool QuadraticFit::solve(double least_scale) {
     return least_squares();
 }
 
+void QuadraticFit::shrink(double unit) {
+    constexpr double kLeastPrior = 0.25;      // of a coefficient's variance: that one came out small does not prove it nought
+    const Normal covariance = unit * unit * cofactors();
+    const Coefficients right = normal_ * c_;
+    for (int i = 3; i < 6; ++i) {
+        const double variance = covariance(i, i);
+        if (variance > 0) {
+            normal_(i, i) += unit * unit / std::max(c_[i] * c_[i] - variance, kLeastPrior * variance);
+        }
+    }
+    c_ = normal_.ldlt().solve(right);
+}
+
 }  // namespace seampath

@@ -43,6 +43,11 @@ public:
     /// that are exact or quantised, same unit as z.
     bool solve(double least_scale);
 
+    /// Shrinks each second-order coefficient towards 0 as far as its uncertainty, at `unit` (1-sigma of one point for the
+    /// purpose of means, same unit as z), leaves it in doubt: positive-part shrinkage (James & Stein 1961) as a ridge. A flat
+    /// surface is then known nearly as well as if it had been known to be flat. cofactors() then are those of the posterior.
+    void shrink(double unit);
+
     const Coefficients& coefficients() const { return c_; }
     double scale() const { return scale_; }                                ///< robust 1-sigma of the residuals
     double weight(std::size_t i) const { return weight_[i]; }              ///< 0..1, 0 for outliers

@@ -265,6 +265,12 @@ std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanSca
     return flank;
 }
 
+// 1-sigma of one point as far as means over many go. Thinned by lot, noise that neighbours shared is less of a share of what
+// is left.
+double unit_of_means(const Flank& flank, const ScanScale& scale) {
+    return flank.fit.scale() * std::sqrt(1 + flank.share * (scale.correlation - 1));
+}
+
 void finish_flank(Flank& flank, const ScanScale& scale, double u) {
     const SectionWindow& w = flank.window;
     const auto& c = flank.fit.coefficients();
@@ -273,9 +279,7 @@ void finish_flank(Flank& flank, const ScanScale& scale, double u) {
     flank.slope = (c[1] + 2 * c[3] * x) / w.away;
     flank.slope_along = (c[2] + c[4] * x) / w.along;
     const auto row = QuadraticFit::row(x, 0);
-    const double variance = row.dot(flank.fit.cofactors() * row) * flank.fit.scale() * flank.fit.scale();
-    // Thinned by lot, noise that neighbours shared is less of a share of what is left.
-    flank.sigma = std::sqrt(variance * (1 + flank.share * (scale.correlation - 1)));
+    flank.sigma = std::sqrt(row.dot(flank.fit.cofactors() * row)) * unit_of_means(flank, scale);
     const double slab = std::max(2.5 * scale.spacing, w.along / 8) / w.along;
     double count = 0;
     for (std::size_t i = 0; i < flank.fit.size(); ++i) {
@@ -313,6 +317,7 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
         }
         result.flank[k] = std::move(*flank);
         result.flank[k].share = share;
+        result.flank[k].fit.shrink(unit_of_means(result.flank[k], scale));
     }
     // Newton's method in the section plane on u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2.
     Eigen::Vector2d u(0, 0);
