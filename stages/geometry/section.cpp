@@ -215,10 +215,44 @@ SectionWindow within_parabola(const Flank& flank, const SectionWindow& limit, do
             std::min(limit.away, parabola_reach(c[3], unit * std::sqrt(cofactors(3, 3)), w.away, noise)), limit.band};
 }
 
+// Noise of this very surface, which may be seen at more of a slant than the place as a whole: scatter of the points about the
+// means of small bins, so that a bend does not pass for noise.
+double flank_noise(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& limit) {
+    constexpr std::size_t kAcross = 4;
+    constexpr double kMost = 2.5;      // of the place's noise; what is rougher is another surface, or none
+    const double least = std::max(scale.noise, 0.02 * scale.spacing);
+    const SectionWindow start = smallest_window(scale);
+    const SectionWindow w{std::min(limit.along, start.along), std::min(limit.away, start.away), limit.band};
+    const auto fit = fit_window(samples, w, least, nullptr);
+    if (!fit) {
+        return least;
+    }
+    std::array<double, kAcross * kAcross> sum{}, count{};
+    const auto bin = [&](std::size_t i) {
+        const double u = (fit->u(i) * w.away - w.band) / (w.away - w.band), s = (fit->s(i) + 1) / 2;
+        const auto step = [](double x) { return std::min(kAcross - 1, static_cast<std::size_t>(std::max(0.0, x) * kAcross)); };
+        return step(u) * kAcross + step(s);
+    };
+    for (std::size_t i = 0; i < fit->size(); ++i) {
+        if (fit->weight(i) > 0) {
+            sum[bin(i)] += fit->residual(i);
+            count[bin(i)] += 1;
+        }
+    }
+    std::vector<double> scatter;
+    for (std::size_t i = 0; i < fit->size(); ++i) {
+        const double n = count[bin(i)];
+        if (fit->weight(i) > 0 && n > 1) {
+            scatter.push_back(std::abs(fit->residual(i) - sum[bin(i)] / n) * std::sqrt(n / (n - 1)));
+        }
+    }
+    return std::clamp(1.4826 * quantile(scatter, 0.5), least, kMost * least);
+}
+
 // The largest window within the limit in which one quadratic explains what it holds. Mostly the limit itself does; else the
 // window grows from the smallest, across and along in turn: where it ends, the surface ends or turns.
 std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, SectionWindow limit) {
-    const double noise = std::max(scale.noise, 0.02 * scale.spacing);
+    const double noise = flank_noise(samples, scale, limit);
     for (int attempt = 0; attempt < 2; ++attempt) {
         Flank whole;
         whole.window = limit;
