@@ -21,7 +21,7 @@ namespace {
 using namespace detail;
 
 constexpr std::size_t kLeastPoints = 200;
-constexpr double kLeastLength = 16;      // of a seam, in point distances
+constexpr double kLeastLength = 12;      // of a seam, in point distances
 
 // As fine as the points allow, so that narrow faces are seen; coarser where a large scan would make too many cells.
 double cell_size(const ScanScale& scale, std::size_t points) {
@@ -68,12 +68,33 @@ std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>&
     return tracks;
 }
 
-double length_of(const Track& track) {
+template <class Points, class Position>
+double length_of(const Points& points, Position&& position) {
     double length = 0;
-    for (std::size_t i = 1; i < track.points.size(); ++i) {
-        length += (track.points[i].section.p - track.points[i - 1].section.p).norm();
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        length += (position(points[i]) - position(points[i - 1])).norm();
     }
     return length;
+}
+
+// Adds the seam along the track to the result, or a remark why it is none.
+void add_seam(Extraction& result, const Tracker& tracker, const Track& track, double min_length, const Eigen::Vector3d& origin) {
+    const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
+    const double least = min_length > 0 ? min_length : kLeastLength * spacing;
+    double length = length_of(track.points, [](const TrackPoint& p) { return p.section.p; });
+    if (length >= least) {
+        auto seam = measure_track(tracker, track, origin);
+        if (!seam) {
+            result.remarks.push_back("a crease of " + fixed(length, 1) + " mm was left out: its flanks are too narrow or too rough for a joint");
+            return;
+        }
+        length = length_of(seam->points, [](const SeamPoint& p) { return p.p; });
+        if (length >= least) {
+            result.seams.push_back(std::move(*seam));
+            return;
+        }
+    }
+    result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least, 1) + " mm");
 }
 
 }  // namespace
@@ -108,18 +129,8 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     const std::vector<Crease> seeds = seeds_of(find_creases(surfels, field));
 
     const Tracker tracker{grid, field, following_window, options.station_mm > 0 ? options.station_mm : grid.cell()};
-    const double least_length = options.min_length_mm > 0 ? options.min_length_mm : kLeastLength * scale.spacing;
     for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
-        const double length = length_of(track);
-        if (length < least_length) {
-            result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least_length, 1) + " mm");
-            continue;
-        }
-        if (auto seam = measure_track(tracker, track, scan.origin_mm)) {
-            result.seams.push_back(std::move(*seam));
-        } else {
-            result.remarks.push_back("a crease of " + fixed(length, 1) + " mm was left out: its flanks are too narrow or too rough for a joint");
-        }
+        add_seam(result, tracker, track, options.min_length_mm, scan.origin_mm);
     }
     std::stable_sort(result.seams.begin(), result.seams.end(), [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
     return result;

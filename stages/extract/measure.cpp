@@ -166,7 +166,7 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
     const double least[2] = {0.1 * quantile(support[0], 0.5), 0.1 * quantile(support[1], 0.5)};
     std::vector<std::optional<TrackPoint>> measured(places.size());
     const auto good = [&](const std::optional<TrackPoint>& point, const TrackPoint& place) {
-        return point && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale_at(place.section).noise &&
+        return point && !unsure(tracker, *point) && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale_at(place.section).noise &&
                (!place.modelled || (point->support[0] >= least[0] && point->support[1] >= least[1]));
     };
     parallel_for(places.size(), 4, [&](std::size_t i) {
@@ -174,7 +174,7 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
         if (!good(measured[i], places[i])) {
             measured[i] = following.measure(places[i].section, 3);      // a narrow place: what followed it can measure it
         }
-        if (!good(measured[i], places[i]) || unsure(tracker, *measured[i])) {
+        if (!good(measured[i], places[i])) {
             measured[i] = places[i].modelled ? std::optional(places[i]) : std::nullopt;
         }
     });
@@ -203,20 +203,22 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
 // A joint has two smooth flanks wider than its own corner, and lies where its points say. Noise, facets and layers of a badly
 // fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they are sure of.
 bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t places) {
-    constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6;
-    std::vector<double> away, rough, jump, sigma;      // the first two in spacings and noises of the place
+    constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6, kMostUnsure = 1;
+    std::vector<double> away, rough, unsure, jump, sigma;      // the first in spacings, the next two in noises
     for (std::size_t i = 1; i + 1 < way.size(); ++i) {
         if (!way[i].modelled) {
             // Across the seam only: places may lie closer or further apart along it.
             const Eigen::Vector3d d = way[i - 1].section.p - 2 * way[i].section.p + way[i + 1].section.p;
             jump.push_back((d - d.dot(way[i].t) * way[i].t).norm());
             away.push_back(way[i].away / tracker.scale_at(way[i].section).spacing);
-            rough.push_back(way[i].rough / noise_at(tracker, way[i].section));
+            rough.push_back(way[i].rough);
+            unsure.push_back(way[i].sigma / noise_at(tracker, way[i].section));
             sigma.push_back(std::max(way[i].sigma, 0.02 * tracker.scale_at(way[i].section).spacing));
         }
     }
     return way.size() >= kLeastPlaces && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth &&
-           quantile(rough, 0.5) <= kMostRough && quantile(jump, 0.5) <= kMostJump * quantile(sigma, 0.5);
+           quantile(rough, 0.5) <= kMostRough && quantile(unsure, 0.5) <= kMostUnsure &&
+           quantile(jump, 0.5) <= kMostJump * quantile(sigma, 0.5);
 }
 
 }  // namespace

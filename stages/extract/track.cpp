@@ -89,7 +89,7 @@ std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) con
     point.bend = fit->bend;
     point.along = std::min(fit->flank[0].window.along, fit->flank[1].window.along);
     point.away = std::min(fit->flank[0].window.away, fit->flank[1].window.away);
-    point.rough = std::max(fit->flank[0].fit.scale(), fit->flank[1].fit.scale());
+    point.rough = std::max(fit->flank[0].fit.scale() / fit->flank[0].noise, fit->flank[1].fit.scale() / fit->flank[1].noise);
     point.support[0] = fit->flank[0].slab_points;
     point.support[1] = fit->flank[1].slab_points;
     return point;

@@ -16,7 +16,7 @@ struct TrackPoint {
     double bend = 0;                  ///< rad
     double along = 0;                 ///< mm, half length over which the flanks were fitted
     double away = 0;                  ///< mm, how far from the seam the narrower flank is one smooth surface
-    double rough = 0;                 ///< mm, residual scale of the rougher flank
+    double rough = 0;                 ///< residual scale of the rougher flank, in its noises
     double support[2] = {0, 0};       ///< points per mm^2 of each flank at this very place
     bool modelled = false;            ///< no support here, but before and after
 };

@@ -170,6 +170,7 @@ Quality quality_of(const QuadraticFit& fit, const SectionWindow& w, double noise
 // Smallest window that carries a fit; the surface may be too bent even for the one it begins with.
 std::optional<Flank> begin_flank(const std::vector<Sample>& samples, const ScanScale& scale, double noise, const SectionWindow& limit) {
     Flank flank;
+    flank.noise = noise;
     const SectionWindow start = smallest_window(scale);
     flank.window = {std::min(limit.along, start.along), std::min(limit.away, start.away), limit.band};
     auto fit = fit_window(samples, flank.window, noise, nullptr);
@@ -256,6 +257,7 @@ std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanSca
     for (int attempt = 0; attempt < 2; ++attempt) {
         Flank whole;
         whole.window = limit;
+        whole.noise = noise;
         auto fit = fit_window(samples, limit, noise, nullptr);
         if (!fit || !quality_of(*fit, limit, noise, scale.correlation).good() || fit->share_taken() < kMostTaken) {
             break;
