@@ -39,29 +39,45 @@ std::vector<TrackPoint> equal_steps(const Track& track, double step) {
     return places;
 }
 
-// Where a stretch of points, given by their distances ahead, ends: the first bin that holds less than half of what the bins
-// before it hold, with the share of that bin that is filled. Stray points beyond the end do not move it.
-double end_of(const std::vector<double>& ahead, double bin, double look) {
-    std::vector<double> count(static_cast<std::size_t>(look / bin) + 1, 0);
-    for (const double x : ahead) {
-        count[std::min(count.size() - 1, static_cast<std::size_t>(x / bin))] += 1;
-    }
-    for (std::size_t i = 0; i + 1 < count.size(); ++i) {
-        std::vector<double> before(count.begin(), count.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(i, 2)));
-        const double usual = quantile(before, 0.5);
-        if (count[i] < 0.5 * usual && count[i + 1] < 0.5 * usual) {
-            // The bin before may be the one in which the surface ends; so may this one.
-            const double partly = i > 0 ? std::min(count[i - 1] / usual, 1.0) - 1 : 0;
-            return bin * (static_cast<double>(i) + partly + count[i] / usual);
+// Where a stretch of points ends that holds `density` points per mm up to distance 0; `ahead`: distances beyond it. The end
+// is the likeliest change from that density to that of stray points: each point speaks for going on, each mm without points
+// against it. A hole is passed when the surface goes on behind it, and where four views become one the surface goes on.
+double end_of(std::vector<double>& ahead, double density) {
+    constexpr double kStray = 0.01;      // density of stray points over that of the surface
+    const double cost = density * (1 - kStray) / -std::log(kStray);
+    std::sort(ahead.begin(), ahead.end());
+    double end = 0, best = 0;
+    for (std::size_t i = 0; i < ahead.size(); ++i) {
+        const double gain = static_cast<double>(i + 1) - cost * ahead[i];
+        if (gain > best) {
+            best = gain;
+            end = ahead[i];
         }
     }
-    return look;
+    return end;
+}
+
+constexpr std::size_t kStrips = 6;
+
+// The straight line through y at x = first, first + step, ..., read at x = 0: medians of slopes and of intercepts (Theil and
+// Sen), so that a strip that a hole has cut short does not bend it.
+double value_at_zero(const std::array<double, kStrips>& y, double first, double step) {
+    std::vector<double> slope, intercept;
+    for (std::size_t i = 0; i < kStrips; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            slope.push_back((y[i] - y[j]) / (step * static_cast<double>(i - j)));
+        }
+    }
+    const double b = quantile(slope, 0.5);
+    for (std::size_t i = 0; i < kStrips; ++i) {
+        intercept.push_back(y[i] - b * (first + step * static_cast<double>(i)));
+    }
+    return quantile(intercept, 0.5);
 }
 
 // How far ahead of an inner place, in the given direction, the shorter of its two flanks reaches at the seam; mm. A flank
 // may end at a slant: the ends of strips at growing distance from the seam are carried on to the seam by a straight line.
 double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direction, double look) {
-    constexpr int kStrips = 4;
     const ScanScale scale = tracker.scale_at(place.section);
     const auto fit = fit_section(tracker.grid, scale, place.section, tracker.window_of(scale));
     if (!fit) {
@@ -74,29 +90,33 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
     for (int k = 0; k < 2; ++k) {
         const Flank& flank = fit->flank[k];
         // Near the seam: a slanted end must still lie ahead in every strip.
-        const double near = flank.window.band, strip = std::min(flank.window.away - near, 16 * scale.spacing) / kStrips;
+        const double spacing = 1 / std::sqrt(std::max(1e-12, flank.slab_points));      // of this flank: fewer views may see it
+        const double near = flank.window.band, strip = std::min(flank.window.away - near, 16 * spacing) / kStrips;
         std::array<std::vector<double>, kStrips> s;
+        std::array<double, kStrips> density{};
+        const double behind = std::min(flank.window.along, look);
         tracker.grid.for_points_in_ball(at.p, std::hypot(near + kStrips * strip, look), [&](const Eigen::Vector3f& q, double) {
             const Eigen::Vector3d v = q.cast<double>() - at.p;
             const double x = v.dot(ahead), u = v.dot(d[k]);
-            if (x >= 0 && x <= look && u >= near && u < near + kStrips * strip) {
+            if (x >= -behind && x <= look && u >= near && u < near + kStrips * strip) {
                 const double z = flank.fit.value(u / flank.window.away, direction * x / flank.window.along);
                 // Beyond the window the fitted quadric is a guess: let the gate open.
                 const double gate = 4 * scale.noise + 0.1 * std::max(0.0, x - flank.window.along);
                 if (std::abs(v.dot(n[k]) - z) <= gate) {
-                    s[static_cast<std::size_t>((u - near) / strip)].push_back(x);
+                    const auto i = static_cast<std::size_t>((u - near) / strip);
+                    if (x > 0) {
+                        s[i].push_back(x);
+                    } else {
+                        density[i] += 1 / behind;
+                    }
                 }
             }
         });
-        // Least squares of end = a + b u over the strips; a is the end at the seam.
-        double su = 0, se = 0, suu = 0, sue = 0, low = look, high = 0;
-        for (int i = 0; i < kStrips; ++i) {
-            const double u = near + (i + 0.5) * strip, e = end_of(s[static_cast<std::size_t>(i)], 2 * scale.spacing, look);
-            su += u, se += e, suu += u * u, sue += u * e;
-            low = std::min(low, e), high = std::max(high, e);
+        std::array<double, kStrips> end;
+        for (std::size_t i = 0; i < kStrips; ++i) {
+            end[i] = end_of(s[i], density[i]);
         }
-        const double slope = (kStrips * sue - su * se) / (kStrips * suu - su * su);
-        reach = std::min(reach, std::clamp((se - slope * su) / kStrips, low - (high - low), high + (high - low)));
+        reach = std::min(reach, value_at_zero(end, near + 0.5 * strip, strip));
     }
     return reach;
 }
@@ -108,7 +128,9 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     if (front) {
         std::reverse(way.begin(), way.end());
     }
-    while (way.size() > 2 * kInside && way.back().modelled) {
+    // Places that saw much less than those a little further in, through a hole or with no flank ahead, are no end to carry on.
+    const auto weak = [&] { return way.back().modelled || way.back().sigma > 2 * way[way.size() - 1 - kInside].sigma; };
+    while (way.size() > 2 * kInside && weak()) {
         way.pop_back();
     }
     const TrackPoint inner = way[way.size() - 1 - kInside];
@@ -118,7 +140,8 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     // A point distance short of the edge: no torch should be sent over it.
     const double reach = reach_ahead(tracker, inner, direction, look) - spacing;
     const auto ahead = [&](const TrackPoint& p) { return direction * (p.section.p - inner.section.p).dot(inner.t); };
-    if (reach + spacing >= look || reach > ahead(way.back()) + 10 * tracker.step) {
+    // The last point lies a point distance or two, of a flank that fewer views see, before the end of the look.
+    if (reach + 4 * spacing >= look || reach > ahead(way.back()) + 10 * tracker.step) {
         // The flanks go on: following ended for another reason, and that reason stands.
         if (front) {
             std::reverse(way.begin(), way.end());

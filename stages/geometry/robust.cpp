@@ -24,7 +24,7 @@ bool QuadraticFit::least_squares() {
             for (int b = 0; a + b <= 4; ++b, wus *= s) {
                 m[a][b] += wus;
                 if (a + b <= 2) {
-                    z[a][b] += wus * z_[i];
+                    z[a][b] += wus * straight_[i];
                 }
             }
         }
@@ -46,6 +46,25 @@ bool QuadraticFit::least_squares() {
     return c_.allFinite();
 }
 
+void QuadraticFit::take_curvature() {
+    constexpr double kMostRise = 0.5;      // of a radius over the tangent plane: beyond, a surface is no graph over it
+    if (u_length_ <= 0) {
+        return;
+    }
+    const double uu = 2 * c_[3] / (u_length_ * u_length_), us = c_[4] / (u_length_ * s_length_), ss = 2 * c_[5] / (s_length_ * s_length_);
+    const double mean = (uu + ss) / 2, rise = std::abs(c_[3]) + std::abs(c_[4]) + std::abs(c_[5]);
+    const double k = mean + std::copysign(std::hypot((uu - ss) / 2, us), mean);
+    const double slope_u = c_[1] / u_length_, slope_s = c_[2] / s_length_;
+    const bool graph = std::abs(k) * rise < kMostRise;
+    middle_ = c_[0];
+    bulge_ = graph ? k : 0;
+    tilt_u_ = graph ? ((uu - k) * slope_u + us * slope_s) * u_length_ : 0;
+    tilt_s_ = graph ? (us * slope_u + (ss - k) * slope_s) * s_length_ : 0;
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+        straight_[i] = straightened(u_[i], s_[i], z_[i]);
+    }
+}
+
 bool QuadraticFit::solve(double least_scale) {
     const std::size_t n = z_.size();
     if (n < 12) {
@@ -53,13 +72,15 @@ bool QuadraticFit::solve(double least_scale) {
     }
     weight_.assign(n, 1);
     residual_.resize(n);
+    straight_ = z_;
     std::vector<double> magnitude(n);
     for (int round = 0; round < kRounds; ++round) {
         if (!least_squares()) {
             return false;
         }
+        take_curvature();
         for (std::size_t i = 0; i < n; ++i) {
-            residual_[i] = z_[i] - value(u_[i], s_[i]);
+            residual_[i] = straight_[i] - value(u_[i], s_[i]);
             magnitude[i] = std::abs(residual_[i]);
         }
         const double before = scale_;

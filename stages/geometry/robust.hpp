@@ -23,6 +23,10 @@ inline double quantile(std::vector<double>& values, double q) {
 /// Robust fit of z = c0 + c1 u + c2 s + c3 u^2 + c4 u s + c5 s^2 by iteratively re-weighted least squares with Tukey's
 /// biweight (c = 4.685, 95 % efficient for Gaussian noise) and the scale from the median absolute residual.
 /// u and s should be of order 1.
+///
+/// A cylinder or sphere is no parabola: over its tangent plane, with the quadratic form q and the curvature k (of larger
+/// modulus), its height is h = q + k h^2 / 2 exactly. Given the lengths that u and s stand for, the fit takes k from itself
+/// and the quadratic is fitted to h - k h^2 / 2. At u = s = 0 height, slope and curvature are those of the quadratic.
 class QuadraticFit {
 public:
     using Coefficients = Eigen::Matrix<double, 6, 1>;
@@ -30,9 +34,12 @@ public:
 
     static Coefficients row(double u, double s) { return (Coefficients() << 1, u, s, u * u, u * s, s * s).finished(); }
 
-    void begin(std::size_t expected) {
+    /// `u_length`, `s_length`: what one unit of u and s stands for, in the unit of z; 0: the surface is the quadratic alone.
+    void begin(std::size_t expected, double u_length = 0, double s_length = 0) {
         u_.clear(), s_.clear(), z_.clear();
         u_.reserve(expected), s_.reserve(expected), z_.reserve(expected);
+        u_length_ = u_length, s_length_ = s_length;
+        bulge_ = tilt_u_ = tilt_s_ = 0;
     }
     void add(double u, double s, double z) { u_.push_back(u), s_.push_back(s), z_.push_back(z); }
     std::size_t size() const { return z_.size(); }
@@ -55,16 +62,26 @@ public:
     double share_taken() const {                                            ///< of the points, with a weight above 0
         return 1 - static_cast<double>(std::count(weight_.begin(), weight_.end(), 0.0)) / static_cast<double>(weight_.size());
     }
-    double value(double u, double s) const { return row(u, s).dot(c_); }
+    double value(double u, double s) const { return row(u, s).dot(c_); }   ///< of the quadratic
+    /// What is left of a point's height when the surface is taken off.
+    double residual(double u, double s, double z) const { return straightened(u, s, z) - value(u, s); }
     /// Inverse of the weighted normal matrix: times scale^2 it is the covariance for uncorrelated noise.
     Normal cofactors() const { return normal_.ldlt().solve(Normal::Identity()); }
 
 private:
     bool least_squares();
+    void take_curvature();
+    // The tilted frame adds terms in h u and h s: in three dimensions n.v = v^T M v / 2 with M n = k n.
+    double straightened(double u, double s, double z) const {
+        const double h = z - middle_;
+        return z - h * (0.5 * bulge_ * h + tilt_u_ * u + tilt_s_ * s);
+    }
 
-    std::vector<double> u_, s_, z_, weight_, residual_;
-    Coefficients c_;
+    std::vector<double> u_, s_, z_, straight_, weight_, residual_;
+    Coefficients c_ = Coefficients::Zero();
     Normal normal_;
+    double u_length_ = 0, s_length_ = 0;
+    double middle_ = 0, bulge_ = 0, tilt_u_ = 0, tilt_s_ = 0;
     double scale_ = 0;
 };
 

@@ -21,8 +21,11 @@ constexpr double kRough = 1.6;                // residual scale, in noises, beyo
 constexpr double kPointsAcross = 12;          // of the smallest window, in point distances
 constexpr double kNoiseWidths = 15;           // of the smallest window, in noises: its slope is then known to a few degrees
 constexpr double kBandWidths = 4;
+constexpr double kLeastNoise = 0.02;          // what counts as noise where a scan has none, in point distances
 constexpr int kBins = 5;
 constexpr std::size_t kLeastPoints = 24;
+
+double noise_of(const ScanScale& scale) { return std::max(scale.noise, kLeastNoise * scale.spacing); }
 
 struct Sample {
     float u, s, z;
@@ -32,14 +35,18 @@ struct Sample {
 // More points than this to a flank add time and, their noise being shared, nothing to the fit: lots are drawn.
 constexpr std::size_t kEnoughPoints = 12000;
 
-// Keeps a share of the samples, chosen by lot; the share is returned.
-double thin_out(std::vector<Sample>& samples) {
-    const double share = std::min(1.0, static_cast<double>(kEnoughPoints) / static_cast<double>(std::max<std::size_t>(1, samples.size())));
-    if (share < 1) {
-        const auto limit = static_cast<std::uint32_t>(share * 4294967295.0);
-        std::erase_if(samples, [limit](const Sample& x) { return x.lot > limit; });
+struct Samples {
+    std::vector<Sample> points;
+    double share = 1;       // of the scan's points there
+};
+
+// Keeps a share of the samples, chosen by lot.
+void thin_out(Samples& samples) {
+    samples.share = std::min(1.0, static_cast<double>(kEnoughPoints) / static_cast<double>(std::max<std::size_t>(1, samples.points.size())));
+    if (samples.share < 1) {
+        const auto limit = static_cast<std::uint32_t>(samples.share * 4294967295.0);
+        std::erase_if(samples.points, [limit](const Sample& x) { return x.lot > limit; });
     }
-    return share;
 }
 
 struct Frame {
@@ -61,19 +68,52 @@ std::optional<Frame> frame_of(const Section& section) {
     return f;
 }
 
-// Points of both flanks within the window. The gate is a wedge: it opens with the distance from the seam, so that a guess a
-// few degrees off still sees its flank, but never reaches the other flank.
-std::array<std::vector<Sample>, 2> gather(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& w) {
-    std::array<std::vector<Sample>, 2> samples;
-    const double opening = std::numbers::pi - std::atan2(f.n[0].cross(f.n[1]).norm(), f.n[0].dot(f.n[1]));
+// What two fits within a small window tell of the flanks.
+using FirstLook = std::array<Flank, 2>;
+
+double residual(const Flank& flank, double u, double s, double z) {
+    return flank.fit.residual(u / flank.window.away, s / flank.window.along, z);
+}
+
+// How far the truth may lie off a fit that is carried on to (u, s), beyond its window, mm.
+double continuation_doubt(const Flank& flank, double u, double s) {
+    return kContinuation * std::max({0.0, u - flank.window.away, std::abs(s) - flank.window.along});
+}
+
+// Points further off a fit than this belong to something else, a step, an edge, another wall.
+double gate(const Flank& flank, double u, double s) { return 4 * flank.noise + continuation_doubt(flank, u, s); }
+
+// Points of both flanks within the window and no closer to the seam than its band. Without a first look at the flanks the
+// gate is a wedge: it opens with the distance from the seam, so that a guess a few degrees off still sees its flank, but
+// never reaches the other flank. After it each flank is carried on, and ends where it comes near to the other: the seam may
+// bend within the window.
+std::array<Samples, 2> gather(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& w, const FirstLook* look) {
+    std::array<Samples, 2> samples;
+    const double sine = f.n[0].cross(f.n[1]).norm(), opening = std::numbers::pi - std::atan2(sine, f.n[0].dot(f.n[1]));
     const double slope = std::tan(std::min(0.3 * opening, kGateSlope)), base = 4 * scale.noise + scale.spacing;
+    const double nearest = look ? -w.away : w.band;
+    const auto wanted = [&](std::size_t k, const Eigen::Vector3d& v, double u, double s, double z) {
+        if (!look) {
+            return std::abs(z) <= base + slope * u;
+        }
+        const double off = residual((*look)[k], u, s, z);
+        if (std::abs(off) > gate((*look)[k], u, s)) {
+            return false;
+        }
+        const Eigen::Vector3d foot = v - off * f.n[k];
+        const std::size_t other = 1 - k;
+        const double other_u = foot.dot(f.d[other]);
+        return residual((*look)[other], other_u, s, foot.dot(f.n[other])) >=
+               std::max(w.band * sine, continuation_doubt((*look)[other], other_u, s));
+    };
     // The box of the two flank rectangles.
     Eigen::Vector3d low = f.p, high = f.p;
-    for (int k = 0; k < 2; ++k) {
-        for (const double u : {0.0, w.away}) {
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (const double u : {nearest, w.away}) {
             for (const double s : {-w.along, w.along}) {
-                for (const double z : {-1.0, 1.0}) {
-                    const Eigen::Vector3d corner = f.p + u * f.d[k] + s * f.t + z * (base + slope * u) * f.n[k];
+                for (const double side : {-1.0, 1.0}) {
+                    const double z = look ? std::abs(residual((*look)[k], u, s, 0)) + gate((*look)[k], u, s) : base + slope * u;
+                    const Eigen::Vector3d corner = f.p + u * f.d[k] + s * f.t + side * z * f.n[k];
                     low = low.cwiseMin(corner);
                     high = high.cwiseMax(corner);
                 }
@@ -87,14 +127,16 @@ std::array<std::vector<Sample>, 2> gather(const PointGrid& grid, const ScanScale
             if (std::abs(s) > w.along) {
                 continue;
             }
-            for (int k = 0; k < 2; ++k) {
+            for (std::size_t k = 0; k < 2; ++k) {
                 const double u = v.dot(f.d[k]), z = v.dot(f.n[k]);
-                if (u >= w.band && u <= w.away && std::abs(z) <= base + slope * u) {
-                    samples[static_cast<std::size_t>(k)].push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), lot_of(q)});
+                if (u >= nearest && u <= w.away && wanted(k, v, u, s, z)) {
+                    samples[k].points.push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), lot_of(q)});
                 }
             }
         }
     });
+    thin_out(samples[0]);
+    thin_out(samples[1]);
     return samples;
 }
 
@@ -131,21 +173,17 @@ SectionWindow smallest_window(const ScanScale& scale) {
     return {0.7 * away, away, std::max(kBandWidths * scale.spacing, kBandWidths * scale.noise)};
 }
 
-// Fits the samples of one window. `inner`, when given, is the fit of a smaller window: what lies off its continuation belongs
-// to something else, a step, an edge, another wall.
-std::optional<QuadraticFit> fit_window(const std::vector<Sample>& samples, const SectionWindow& w, double noise, const Flank* inner) {
+// Fits the samples of one window. `inner`, when given, is the fit of a smaller window: what lies off its continuation is left
+// out.
+std::optional<QuadraticFit> fit_window(const Samples& samples, const SectionWindow& w, double noise, const Flank* inner) {
     QuadraticFit fit;
-    fit.begin(samples.size());
-    for (const Sample& x : samples) {
-        if (x.u < w.band || x.u > w.away || std::abs(x.s) > w.along) {
+    fit.begin(samples.points.size(), w.away, w.along);
+    for (const Sample& x : samples.points) {
+        if (x.u > w.away || std::abs(x.s) > w.along) {
             continue;
         }
-        if (inner) {
-            const double beyond = std::max({0.0, x.u - inner->window.away, std::abs(x.s) - inner->window.along});
-            const double z = inner->fit.value(x.u / inner->window.away, x.s / inner->window.along);
-            if (std::abs(x.z - z) > 4 * noise + kContinuation * beyond) {
-                continue;
-            }
+        if (inner && std::abs(residual(*inner, x.u, x.s, x.z)) > gate(*inner, x.u, x.s)) {
+            continue;
         }
         fit.add(x.u / w.away, x.s / w.along, x.z);
     }
@@ -168,7 +206,7 @@ Quality quality_of(const QuadraticFit& fit, const SectionWindow& w, double noise
 }
 
 // Smallest window that carries a fit; the surface may be too bent even for the one it begins with.
-std::optional<Flank> begin_flank(const std::vector<Sample>& samples, const ScanScale& scale, double noise, const SectionWindow& limit) {
+std::optional<Flank> begin_flank(const Samples& samples, const ScanScale& scale, double noise, const SectionWindow& limit) {
     Flank flank;
     flank.noise = noise;
     const SectionWindow start = smallest_window(scale);
@@ -183,6 +221,7 @@ std::optional<Flank> begin_flank(const std::vector<Sample>& samples, const ScanS
         return std::nullopt;
     }
     flank.fit = std::move(*fit);
+    flank.share = samples.share;
     for (int shrinks = 0; shrinks < 4; ++shrinks) {
         const Quality q = quality_of(flank.fit, flank.window, noise, scale.correlation);
         if (q.good()) {
@@ -200,28 +239,29 @@ std::optional<Flank> begin_flank(const std::vector<Sample>& samples, const ScanS
     return flank;
 }
 
-// How far a surface of curvature 2 |c| / extent^2 is still a parabola: the circle's next term, k^3 x^4 / 8, is to stay below
-// a third of the noise. Only curvature that the fit is sure of counts.
-double parabola_reach(double c, double sigma, double extent, double noise) {
-    const double k = 2 * std::max(0.0, std::abs(c) - 2 * sigma) / (extent * extent);
-    return k > 0 ? std::pow(8 * 0.3 * noise / (k * k * k), 0.25) : std::numeric_limits<double>::infinity();
+// How far a surface of curvature k is known by its curvature alone: the term of a circle after the one that the fit takes
+// off, k^5 x^6 / 16, is to stay below a third of the noise.
+double curvature_reach(double k, double noise) {
+    return k > 0 ? std::pow(16 * 0.3 * noise / std::pow(k, 5), 1.0 / 6) : std::numeric_limits<double>::infinity();
 }
 
-SectionWindow within_parabola(const Flank& flank, const SectionWindow& limit, double noise, double correlation) {
+// The limit cut down to where the flank's curvature, as far as the fit is sure of it, lets the fit be carried on. Twist bends
+// both ways: a row of the curvature matrix bounds the bend in its direction.
+SectionWindow within_reach(const Flank& flank, const SectionWindow& limit, double noise, double correlation) {
     const QuadraticFit::Normal cofactors = flank.fit.cofactors();
     const double unit = flank.fit.scale() * std::sqrt(correlation);
-    const auto& c = flank.fit.coefficients();
     const SectionWindow& w = flank.window;
-    return {std::min(limit.along, parabola_reach(c[5], unit * std::sqrt(cofactors(5, 5)), w.along, noise)),
-            std::min(limit.away, parabola_reach(c[3], unit * std::sqrt(cofactors(3, 3)), w.away, noise)), limit.band};
+    const auto sure = [&](int i) { return std::max(0.0, std::abs(flank.fit.coefficients()[i]) - 2 * unit * std::sqrt(cofactors(i, i))); };
+    const double across = 2 * sure(3) / (w.away * w.away), twist = sure(4) / (w.away * w.along), along = 2 * sure(5) / (w.along * w.along);
+    return {std::min(limit.along, curvature_reach(along + twist, noise)), std::min(limit.away, curvature_reach(across + twist, noise)), limit.band};
 }
 
 // Noise of this very surface, which may be seen at more of a slant than the place as a whole: scatter of the points about the
 // means of small bins, so that a bend does not pass for noise.
-double flank_noise(const std::vector<Sample>& samples, const ScanScale& scale, const SectionWindow& limit) {
+double flank_noise(const Samples& samples, const ScanScale& scale, const SectionWindow& limit) {
     constexpr std::size_t kAcross = 4;
     constexpr double kMost = 2.5;      // of the place's noise; what is rougher is another surface, or none
-    const double least = std::max(scale.noise, 0.02 * scale.spacing);
+    const double least = noise_of(scale);
     const SectionWindow start = smallest_window(scale);
     const SectionWindow w{std::min(limit.along, start.along), std::min(limit.away, start.away), limit.band};
     const auto fit = fit_window(samples, w, least, nullptr);
@@ -250,61 +290,102 @@ double flank_noise(const std::vector<Sample>& samples, const ScanScale& scale, c
     return std::clamp(1.4826 * quantile(scatter, 0.5), least, kMost * least);
 }
 
-// The largest window within the limit in which one quadratic explains what it holds. Mostly the limit itself does; else the
-// window grows from the smallest, across and along in turn: where it ends, the surface ends or turns.
-std::optional<Flank> fit_flank(const std::vector<Sample>& samples, const ScanScale& scale, SectionWindow limit) {
-    const double noise = flank_noise(samples, scale, limit);
-    for (int attempt = 0; attempt < 2; ++attempt) {
-        Flank whole;
-        whole.window = limit;
-        whole.noise = noise;
-        auto fit = fit_window(samples, limit, noise, nullptr);
-        if (!fit || !quality_of(*fit, limit, noise, scale.correlation).good() || fit->share_taken() < kMostTaken) {
-            break;
-        }
-        whole.fit = std::move(*fit);
-        const SectionWindow reach = within_parabola(whole, limit, noise, scale.correlation);
-        if (attempt == 1 || (reach.away >= 0.9 * limit.away && reach.along >= 0.9 * limit.along)) {
-            return whole;
-        }
-        limit.away = std::max(reach.away, std::min(limit.away, smallest_window(scale).away));
-        limit.along = std::max(reach.along, std::min(limit.along, smallest_window(scale).along));
+// Takes the whole of the limit, as far as the flank's curvature is known, when one surface explains it.
+bool take_whole(Flank& flank, const Samples& samples, const ScanScale& scale, const SectionWindow& limit, bool continued) {
+    auto fit = fit_window(samples, limit, flank.noise, continued ? &flank : nullptr);
+    if (!fit || fit->share_taken() < kMostTaken || !quality_of(*fit, limit, flank.noise, scale.correlation).good()) {
+        return false;
     }
-    auto flank = begin_flank(samples, scale, noise, limit);
-    if (!flank) {
-        return std::nullopt;
-    }
+    flank.window = limit;
+    flank.fit = std::move(*fit);
+    flank.share = samples.share;
+    return true;
+}
+
+// The window grows, across and along in turn, as long as one surface explains what it holds: where it ends, the surface ends
+// or turns.
+void grow(Flank& flank, const Samples& samples, const ScanScale& scale, const SectionWindow& limit) {
+    const double noise = flank.noise;
     bool across = true, along = true;
-    while ((across && flank->window.away < limit.away) || (along && flank->window.along < limit.along)) {
+    while ((across && flank.window.away < limit.away) || (along && flank.window.along < limit.along)) {
         for (const bool widen_across : {true, false}) {
             bool& open = widen_across ? across : along;
             double SectionWindow::*const extent = widen_across ? &SectionWindow::away : &SectionWindow::along;
-            if (!open || flank->window.*extent >= limit.*extent) {
+            if (!open || flank.window.*extent >= limit.*extent) {
                 continue;
             }
-            SectionWindow w = flank->window;
-            w.*extent = std::min({limit.*extent, w.*extent * kGrow, within_parabola(*flank, limit, noise, scale.correlation).*extent});
-            if (w.*extent < 1.1 * flank->window.*extent) {
+            SectionWindow w = flank.window;
+            w.*extent = std::min({limit.*extent, w.*extent * kGrow, within_reach(flank, limit, noise, scale.correlation).*extent});
+            if (w.*extent < 1.1 * flank.window.*extent) {
                 open = false;
                 continue;
             }
-            auto fit = fit_window(samples, w, noise, &*flank);
-            const Quality q = fit ? quality_of(*fit, w, noise, scale.correlation) : Quality{2, 2, false, true};
-            if (q.good()) {
-                flank->window = w;
-                flank->fit = std::move(*fit);
+            auto fit = fit_window(samples, w, noise, &flank);
+            if (fit && quality_of(*fit, w, noise, scale.correlation).good()) {
+                flank.window = w;
+                flank.fit = std::move(*fit);
+                flank.share = samples.share;
             } else {
                 open = false;
             }
         }
     }
-    return flank;
+}
+
+// The flank in the largest window within the limit in which one surface explains what it holds; mostly that is the limit.
+std::optional<Flank> fit_flank(const Samples& samples, const ScanScale& scale, const SectionWindow& limit) {
+    Flank flank;
+    flank.noise = flank_noise(samples, scale, limit);
+    if (take_whole(flank, samples, scale, limit, false)) {
+        const SectionWindow reach = within_reach(flank, limit, flank.noise, scale.correlation);
+        if (reach.away >= 0.9 * limit.away && reach.along >= 0.9 * limit.along) {
+            return flank;
+        }
+    }
+    auto begun = begin_flank(samples, scale, flank.noise, limit);
+    if (begun) {
+        grow(*begun, samples, scale, limit);
+    }
+    return begun;
+}
+
+// The same for a wider window, from a fit of a smaller one.
+void widen(Flank& flank, const Samples& samples, const ScanScale& scale, const SectionWindow& window) {
+    SectionWindow limit = within_reach(flank, window, flank.noise, scale.correlation);
+    limit.away = std::max(limit.away, flank.window.away);
+    limit.along = std::max(limit.along, flank.window.along);
+    if (!take_whole(flank, samples, scale, limit, true)) {
+        grow(flank, samples, scale, window);
+    }
+}
+
+// Variance of the means of blocks of residuals over that of as many independent ones. Blocks are much wider than noise is
+// correlated; what they share is also whatever bends the surface by less than the tests of its shape see.
+double shared_variance(const QuadraticFit& fit) {
+    constexpr std::size_t kAcross = 6, kAlong = 8;
+    std::array<double, kAcross * kAlong> sum{};
+    double squares = 0;
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        const auto at = [](double x, std::size_t n) {
+            return static_cast<std::size_t>(std::clamp(x * static_cast<double>(n), 0.0, static_cast<double>(n) - 0.5));
+        };
+        const double r = fit.weight(i) * fit.residual(i);
+        sum[at(fit.u(i), kAcross) * kAlong + at((fit.s(i) + 1) / 2, kAlong)] += r;
+        squares += r * r;
+    }
+    double shared = 0, blocks = 0;
+    for (const double x : sum) {
+        shared += x * x;
+        blocks += x != 0;
+    }
+    // Six parameters have been fitted to the sums.
+    return blocks > 12 && squares > 0 ? shared / squares * blocks / (blocks - 6) : 1;
 }
 
 // 1-sigma of one point as far as means over many go. Thinned by lot, noise that neighbours shared is less of a share of what
 // is left.
 double unit_of_means(const Flank& flank, const ScanScale& scale) {
-    return flank.fit.scale() * std::sqrt(1 + flank.share * (scale.correlation - 1));
+    return flank.fit.scale() * std::sqrt(std::max(1 + flank.share * (scale.correlation - 1), shared_variance(flank.fit)));
 }
 
 void finish_flank(Flank& flank, const ScanScale& scale, double u) {
@@ -324,6 +405,26 @@ void finish_flank(Flank& flank, const ScanScale& scale, double u) {
     flank.slab_points = count / flank.share / (2 * slab * w.along) / (w.away - w.band);
 }
 
+// As much as bends and corners allow to be seen without knowing of them.
+SectionWindow first_window(const ScanScale& scale, const SectionWindow& window) {
+    const SectionWindow follow = following_window(scale);
+    return {std::min(window.along, follow.along), std::min(window.away, follow.away), window.band};
+}
+
+std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& window) {
+    const SectionWindow near = first_window(scale, window);
+    const auto samples = gather(grid, scale, f, near, nullptr);
+    FirstLook look;
+    for (std::size_t k = 0; k < 2; ++k) {
+        auto flank = fit_flank(samples[k], scale, near);
+        if (!flank) {
+            return std::nullopt;
+        }
+        look[k] = std::move(*flank);
+    }
+    return look;
+}
+
 }  // namespace
 
 SectionWindow following_window(const ScanScale& scale) {
@@ -334,7 +435,7 @@ SectionWindow following_window(const ScanScale& scale) {
 
 SectionWindow measuring_window(const ScanScale& scale) {
     const SectionWindow follow = following_window(scale);
-    return {2.4 * follow.along, 1.7 * follow.away, follow.band};
+    return {3.3 * follow.along, 2.4 * follow.away, follow.band};
 }
 
 std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess, const SectionWindow& window) {
@@ -343,16 +444,20 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
         return std::nullopt;
     }
     const Frame& f = *frame;
-    auto samples = gather(grid, scale, f, window);
-    SectionFit result;
-    for (int k = 0; k < 2; ++k) {
-        const double share = thin_out(samples[static_cast<std::size_t>(k)]);
-        auto flank = fit_flank(samples[static_cast<std::size_t>(k)], scale, window);
-        if (!flank) {
-            return std::nullopt;
+    auto look = first_look(grid, scale, f, window);
+    if (!look) {
+        return std::nullopt;
+    }
+    const SectionWindow seen = first_window(scale, window);
+    if (window.along > seen.along || window.away > seen.away) {
+        const auto samples = gather(grid, scale, f, window, &*look);
+        for (std::size_t k = 0; k < 2; ++k) {
+            widen((*look)[k], samples[k], scale, window);
         }
-        result.flank[k] = std::move(*flank);
-        result.flank[k].share = share;
+    }
+    SectionFit result;
+    for (std::size_t k = 0; k < 2; ++k) {
+        result.flank[k] = std::move((*look)[k]);
         result.flank[k].fit.shrink(unit_of_means(result.flank[k], scale));
     }
     // Newton's method in the section plane on u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2.

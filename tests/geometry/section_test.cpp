@@ -76,6 +76,49 @@ TEST(Section, PipeOnPlateMeetsOnItsCircle) {
     EXPECT_NEAR(fit->bend, 90 * kDegree, 2e-3);
 }
 
+TEST(Section, SeesRoundFlanksAndBentSeamsWithAWideWindow) {
+    // The window is as wide as the pipe: neither is the pipe a parabola in it nor the seam a straight line.
+    constexpr double kRadius = 20;
+    std::vector<Eigen::Vector3f> points;
+    add_cylinder(points, kRadius, 30, {0.3, 0.02, 3}, -1.5, 1.5);
+    add_rectangle(points, {-10, -40, 0}, Vector3d::UnitX(), 60, Vector3d::UnitY(), 80, {0.3, 0.02, 4});
+    std::erase_if(points, [](const Eigen::Vector3f& p) { return p.z() < 0.3f && p.head<2>().norm() < kRadius; });
+    const PointGrid grid(points, 1.2);
+    const Section guess{{kRadius + 0.2, 0, 0.2}, {0, 0, 1}, {1, 0, 0}};
+    const auto fit = settle_section(grid, {0.3, 0.02, 1}, guess, {20, 20, 1.2}, 6);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->section.p.head<2>().norm(), kRadius, 0.01);
+    EXPECT_NEAR(fit->section.p.z(), 0, 0.01);
+    EXPECT_LT(fit->sigma, 0.01);
+    EXPECT_GT(fit->flank[0].window.along, 19) << "the plate is flat";
+    EXPECT_GT(fit->flank[1].window.away, 19) << "and the pipe straight along its axis";
+}
+
+TEST(Section, SigmaKnowsOfNoiseThatNeighboursShare) {
+    // Each sample's noise is that of its cell of 1.5 mm, some 25 points.
+    const auto points_with = [](std::uint64_t seed) {
+        auto points = wedge(90 * kDegree, {0.3, 0, seed});
+        const Random random(seed, 77);
+        for (auto& p : points) {
+            const bool floor = p.z() < 1e-6f;
+            const auto column = static_cast<std::uint64_t>((p.x() + 25) / 1.5f), row = static_cast<std::uint64_t>((floor ? p.y() : p.z()) / 1.5f);
+            (floor ? p.z() : p.y()) += static_cast<float>(0.045 * random.normal(column * 1000 + row + (floor ? 0 : 500)));
+        }
+        return points;
+    };
+    double sum = 0;
+    constexpr int kTrials = 40;
+    for (std::uint64_t i = 0; i < kTrials; ++i) {
+        const auto points = points_with(i + 1);
+        // The scan as a whole did not tell: a correlation of 1.
+        const auto fit = fit_section(PointGrid(points, 1.2), {0.3, 0.045, 1}, wedge_section(90 * kDegree), {15, 15, 1.2});
+        ASSERT_TRUE(fit);
+        sum += fit->section.p.tail<2>().squaredNorm() / (fit->sigma * fit->sigma);
+    }
+    EXPECT_GT(sum / kTrials, 0.5);
+    EXPECT_LT(sum / kTrials, 2);
+}
+
 TEST(Section, IgnoresTheCornerBandItself) {
     auto points = wedge(90 * kDegree, {0.3, 0, 2});
     // A radius of 1 mm instead of the corner.
