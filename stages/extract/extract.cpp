@@ -21,7 +21,7 @@ namespace {
 using namespace detail;
 
 constexpr std::size_t kLeastPoints = 200;
-constexpr double kLeastLength = 12;      // of a seam, in point distances
+constexpr double kLeastLength = 10;      // of a seam, in point distances
 
 // As fine as the points allow, so that narrow faces are seen; coarser where a large scan would make too many cells.
 double cell_size(const ScanScale& scale, std::size_t points) {

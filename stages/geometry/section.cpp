@@ -290,10 +290,20 @@ double flank_noise(const Samples& samples, const ScanScale& scale, const Section
     return std::clamp(1.4826 * quantile(scatter, 0.5), least, kMost * least);
 }
 
+// Whether what a wider window holds beyond the flank's own is the same surface going on, and not strays or what lies behind
+// its edge: a share of the flank's density at least.
+bool goes_on(const Flank& flank, const QuadraticFit& fit, const SectionWindow& w) {
+    constexpr double kLeastDensity = 0.3;
+    const auto area = [](const SectionWindow& x) { return 2 * x.along * (x.away - x.band); };
+    const auto inside = static_cast<double>(flank.fit.size()), all = static_cast<double>(fit.size());
+    return all - inside >= kLeastDensity * inside / area(flank.window) * (area(w) - area(flank.window));
+}
+
 // Takes the whole of the limit, as far as the flank's curvature is known, when one surface explains it.
 bool take_whole(Flank& flank, const Samples& samples, const ScanScale& scale, const SectionWindow& limit, bool continued) {
     auto fit = fit_window(samples, limit, flank.noise, continued ? &flank : nullptr);
-    if (!fit || fit->share_taken() < kMostTaken || !quality_of(*fit, limit, flank.noise, scale.correlation).good()) {
+    if (!fit || fit->share_taken() < kMostTaken || !quality_of(*fit, limit, flank.noise, scale.correlation).good() ||
+        (continued && !goes_on(flank, *fit, limit))) {
         return false;
     }
     flank.window = limit;
@@ -321,7 +331,7 @@ void grow(Flank& flank, const Samples& samples, const ScanScale& scale, const Se
                 continue;
             }
             auto fit = fit_window(samples, w, noise, &flank);
-            if (fit && quality_of(*fit, w, noise, scale.correlation).good()) {
+            if (fit && quality_of(*fit, w, noise, scale.correlation).good() && goes_on(flank, *fit, w)) {
                 flank.window = w;
                 flank.fit = std::move(*fit);
                 flank.share = samples.share;
@@ -332,9 +342,58 @@ void grow(Flank& flank, const Samples& samples, const ScanScale& scale, const Se
     }
 }
 
+// Where points at these distances from the seam, or from the section, end: infinity when they go on to the last one possible.
+double end_of(const std::vector<double>& distance, double from, double to, double spacing) {
+    constexpr double kLeastShare = 0.25;      // of the usual density; two bins without it are no hole
+    const double bin = 3 * spacing;
+    std::vector<double> count(static_cast<std::size_t>(std::max(0.0, (to - from) / bin)) + 1, 0), nearer;
+    for (const double x : distance) {
+        count[std::min(count.size() - 1, static_cast<std::size_t>(std::max(0.0, (x - from) / bin)))] += 1;
+    }
+    for (std::size_t i = 1; i + 2 < count.size(); ++i) {      // the last bin is a part of one
+        nearer.assign(count.begin(), count.begin() + static_cast<std::ptrdiff_t>(i));
+        const double enough = kLeastShare * quantile(nearer, 0.5);
+        if (count[i] < enough && count[i + 1] < enough) {
+            return from + bin * static_cast<double>(i);
+        }
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+// How far from the seam a flank may be used where it ends within the window. What lies at its edge is a face that turns away,
+// seen from beside: it would bend the fit. Edges have radii as corners have: a band is left out there too.
+double edge_across(const Samples& samples, const ScanScale& scale, const SectionWindow& w) {
+    std::vector<double> u;
+    for (const Sample& x : samples.points) {
+        u.push_back(x.u);
+    }
+    return std::max(end_of(u, w.band, w.away, scale.spacing) - w.band, w.band + 6 * scale.spacing);
+}
+
+// The same along the seam, each way; the samples beyond are left out.
+Samples within_ends(const Samples& samples, const ScanScale& scale, const SectionWindow& w) {
+    Samples kept;
+    kept.share = samples.share;
+    double reach[2];
+    for (const int way : {0, 1}) {
+        std::vector<double> s;
+        for (const Sample& x : samples.points) {
+            if ((x.s < 0) == (way == 0)) {
+                s.push_back(std::abs(x.s));
+            }
+        }
+        reach[way] = std::max(end_of(s, 0, w.along, scale.spacing) - w.band, 3 * scale.spacing);
+    }
+    std::copy_if(samples.points.begin(), samples.points.end(), std::back_inserter(kept.points),
+                 [&](const Sample& x) { return x.s >= -reach[0] && x.s <= reach[1]; });
+    return kept;
+}
+
 // The flank in the largest window within the limit in which one surface explains what it holds; mostly that is the limit.
-std::optional<Flank> fit_flank(const Samples& samples, const ScanScale& scale, const SectionWindow& limit) {
+std::optional<Flank> fit_flank(const Samples& samples, const ScanScale& scale, SectionWindow limit) {
     Flank flank;
+    flank.edge = edge_across(samples, scale, limit);
+    limit.away = std::min(limit.away, flank.edge);
     flank.noise = flank_noise(samples, scale, limit);
     if (take_whole(flank, samples, scale, limit, false)) {
         const SectionWindow reach = within_reach(flank, limit, flank.noise, scale.correlation);
@@ -342,15 +401,18 @@ std::optional<Flank> fit_flank(const Samples& samples, const ScanScale& scale, c
             return flank;
         }
     }
-    auto begun = begin_flank(samples, scale, flank.noise, limit);
+    const Samples inside = within_ends(samples, scale, limit);
+    auto begun = begin_flank(inside, scale, flank.noise, limit);
     if (begun) {
-        grow(*begun, samples, scale, limit);
+        begun->edge = flank.edge;
+        grow(*begun, inside, scale, limit);
     }
     return begun;
 }
 
 // The same for a wider window, from a fit of a smaller one.
-void widen(Flank& flank, const Samples& samples, const ScanScale& scale, const SectionWindow& window) {
+void widen(Flank& flank, const Samples& samples, const ScanScale& scale, SectionWindow window) {
+    window.away = std::min(window.away, flank.edge);
     SectionWindow limit = within_reach(flank, window, flank.noise, scale.correlation);
     limit.away = std::max(limit.away, flank.window.away);
     limit.along = std::max(limit.along, flank.window.along);

@@ -44,6 +44,7 @@ struct Flank {
     double slope = 0;              ///< dz/du there
     double slope_along = 0;        ///< dz/ds there
     double sigma = 0;              ///< 1-sigma of height, mm
+    double edge = 0;               ///< mm from the seam up to which it is used: a band before its end; infinity: no end seen
     double noise = 0;              ///< mm, of a point on this very surface
     double share = 1;              ///< of the points in the window that took part
     double slab_points = 0;        ///< points per mm^2 of the flank right at the section
