@@ -98,10 +98,7 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
             const Eigen::Vector3d v = q.cast<double>() - at.p;
             const double x = v.dot(ahead), u = v.dot(d[k]);
             if (x >= -behind && x <= look && u >= near && u < near + kStrips * strip) {
-                const double z = flank.fit.value(u / flank.window.away, direction * x / flank.window.along);
-                // Beyond the window the fitted quadric is a guess: let the gate open.
-                const double gate = 4 * tracker.scale.noise + 0.1 * std::max(0.0, x - flank.window.along);
-                if (std::abs(v.dot(n[k]) - z) <= gate) {
+                if (std::abs(residual(flank, u, direction * x, v.dot(n[k]))) <= gate(flank, u, x, tracker.scale.noise)) {
                     const auto i = static_cast<std::size_t>((u - near) / strip);
                     if (x > 0) {
                         s[i].push_back(x);
