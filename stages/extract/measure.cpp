@@ -117,6 +117,32 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
     return reach;
 }
 
+// Whether the way runs straight, as far as noise lets it be seen, from its front or back over `length` mm.
+bool straight_end(const std::vector<TrackPoint>& way, bool front, double length, double noise) {
+    const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return way[front ? i : way.size() - 1 - i].section.p; };
+    std::size_t far = 0;
+    while (far + 1 < way.size() && (at(far) - at(0)).norm() < length) {
+        ++far;
+    }
+    const Eigen::Vector3d chord = (at(far) - at(0)).normalized();
+    for (std::size_t i = 0; i < far; ++i) {
+        const Eigen::Vector3d d = at(i) - at(0);
+        if ((d - d.dot(chord) * chord).norm() > 4 * noise) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Towards a straight end the window finds flanks on one side only: it keeps their length by reaching further that way. Else
+// the place at the end, where the fit is carried on, would be the worst measured of all. Beside a bent end flanks bend too, in
+// ways that the fit does not know so far away.
+Tracker near_end(const Tracker& tracker, double to_end) {
+    Tracker longer = tracker;
+    longer.window.along += std::max(0.0, tracker.window.along - to_end);
+    return longer;
+}
+
 // Shortens or lengthens one end so that it lies where the first flank ends. Judged from a few steps inside, where both
 // flanks are whole: fits at the end itself have data on one side only.
 void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front) {
@@ -149,7 +175,8 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     const TrackPoint& last = way.back();
     const double rest = (reach - ahead(last)) / std::max(0.3, last.t.dot(inner.t));
     const Section guess = carry_on(way, direction, rest);
-    auto end = tracker.measure(guess, 3);
+    const bool straight = straight_end(way, false, 2 * tracker.window.along, tracker.scale.noise);
+    auto end = near_end(tracker, straight ? 0 : tracker.window.along).measure(guess, 3);
     if (!end || end->sigma > 2 * last.sigma || (end->section.p - guess.p).norm() > 3 * last.sigma) {
         end = last;
         end->section = guess;
@@ -163,7 +190,7 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
 
 // Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
 std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, const Tracker& tracker,
-                                                     const std::vector<TrackPoint>& places) {
+                                                     const std::vector<TrackPoint>& places, bool closed) {
     std::vector<double> support[2];
     for (const TrackPoint& place : places) {
         if (!place.modelled) {
@@ -177,8 +204,17 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
         return point && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale.noise &&
                (!place.modelled || (point->support[0] >= least[0] && point->support[1] >= least[1]));
     };
+    const double look = 2 * tracker.window.along, noise = tracker.scale.noise;
+    const bool straight[2] = {!closed && straight_end(places, true, look, noise), !closed && straight_end(places, false, look, noise)};
     parallel_for(places.size(), 4, [&](std::size_t i) {
-        measured[i] = tracker.measure(places[i].section, 3);
+        double to_end = tracker.window.along;
+        if (straight[0]) {
+            to_end = std::min(to_end, static_cast<double>(i) * tracker.step);
+        }
+        if (straight[1]) {
+            to_end = std::min(to_end, static_cast<double>(places.size() - 1 - i) * tracker.step);
+        }
+        measured[i] = near_end(tracker, to_end).measure(places[i].section, 3);
         if (!good(measured[i], places[i])) {
             measured[i] = following.measure(places[i].section, 3);      // a narrow place: what followed it can measure it
         }
@@ -235,7 +271,7 @@ std::optional<Seam> measure_track(const Tracker& following, const Track& track, 
     Tracker tracker = following;
     tracker.window = measuring_window(following.scale);
     const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
-    std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places));
+    std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places, track.closed));
     if (!is_joint(tracker.scale, way, places.size())) {
         return std::nullopt;
     }
