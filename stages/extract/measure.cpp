@@ -99,10 +99,7 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
             const Eigen::Vector3d v = q.cast<double>() - at.p;
             const double x = v.dot(ahead), u = v.dot(d[k]);
             if (x >= -behind && x <= look && u >= near && u < near + kStrips * strip) {
-                const double z = flank.fit.value(u / flank.window.away, direction * x / flank.window.along);
-                // Beyond the window the fitted quadric is a guess: let the gate open.
-                const double gate = 4 * scale.noise + 0.1 * std::max(0.0, x - flank.window.along);
-                if (std::abs(v.dot(n[k]) - z) <= gate) {
+                if (std::abs(residual(flank, u, direction * x, v.dot(n[k]))) <= gate(flank, u, x)) {
                     const auto i = static_cast<std::size_t>((u - near) / strip);
                     if (x > 0) {
                         s[i].push_back(x);
@@ -119,6 +116,32 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
         reach = std::min(reach, value_at_zero(end, near + 0.5 * strip, strip));
     }
     return reach;
+}
+
+// Whether the way runs straight, as far as noise lets it be seen, from its front or back over `length` mm.
+bool straight_end(const std::vector<TrackPoint>& way, bool front, double length, double noise) {
+    const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return way[front ? i : way.size() - 1 - i].section.p; };
+    std::size_t far = 0;
+    while (far + 1 < way.size() && (at(far) - at(0)).norm() < length) {
+        ++far;
+    }
+    const Eigen::Vector3d chord = (at(far) - at(0)).normalized();
+    for (std::size_t i = 0; i < far; ++i) {
+        const Eigen::Vector3d d = at(i) - at(0);
+        if ((d - d.dot(chord) * chord).norm() > 4 * noise) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Towards a straight end the window finds flanks on one side only: it keeps their length by reaching further that way. Else
+// the place at the end, where the fit is carried on, would be the worst measured of all. Beside a bent end flanks bend too, in
+// ways that the fit does not know so far away.
+Tracker near_end(const Tracker& tracker, double to_end, double along) {
+    Tracker longer = tracker;
+    longer.reach_further = std::max(0.0, along - to_end);
+    return longer;
 }
 
 // Shortens or lengthens one end so that it lies where the first flank ends. Judged from a few steps inside, where both
@@ -154,7 +177,9 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     const TrackPoint& last = way.back();
     const double rest = (reach - ahead(last)) / std::max(0.3, last.t.dot(inner.t));
     const Section guess = carry_on(way, direction, rest);
-    auto end = tracker.measure(guess, 3);
+    const double along = tracker.window_at(guess).along;
+    const bool straight = straight_end(way, false, 2 * along, tracker.scale_at(guess).noise);
+    auto end = near_end(tracker, straight ? 0 : along, along).measure(guess, 3);
     if (!end || end->sigma > 2 * last.sigma || (end->section.p - guess.p).norm() > 3 * last.sigma) {
         end = last;
         end->section = guess;
@@ -166,19 +191,13 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     }
 }
 
-// Noise below this share of the spacing counts as none, where a scan is exact or quantised.
-double noise_at(const Tracker& tracker, const Section& place) {
-    const ScanScale scale = tracker.scale_at(place);
-    return std::max(scale.noise, 0.02 * scale.spacing);
-}
-
 // Hundreds of points that leave the seam less sure than two scan points do not see two surfaces: fits shrink to that in the
 // smooth valleys of bent or badly fused parts.
-bool unsure(const Tracker& tracker, const TrackPoint& point) { return point.sigma > 2 * noise_at(tracker, point.section); }
+bool unsure(const Tracker& tracker, const TrackPoint& point) { return point.sigma > 2 * noise_of(tracker.scale_at(point.section)); }
 
 // Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
 std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, const Tracker& tracker,
-                                                     const std::vector<TrackPoint>& places) {
+                                                     const std::vector<TrackPoint>& places, bool closed) {
     std::vector<double> support[2];
     for (const TrackPoint& place : places) {
         if (!place.modelled) {
@@ -192,8 +211,21 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
         return point && !unsure(tracker, *point) && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale_at(place.section).noise &&
                (!place.modelled || (point->support[0] >= least[0] && point->support[1] >= least[1]));
     };
+    const auto straight = [&](bool front) {
+        const Section& end = front ? places.front().section : places.back().section;
+        return !closed && straight_end(places, front, 2 * tracker.window_at(end).along, tracker.scale_at(end).noise);
+    };
+    const bool straight_front = straight(true), straight_back = straight(false);
     parallel_for(places.size(), 4, [&](std::size_t i) {
-        measured[i] = tracker.measure(places[i].section, 3);
+        const double along = tracker.window_at(places[i].section).along;
+        double to_end = along;
+        if (straight_front) {
+            to_end = std::min(to_end, static_cast<double>(i) * tracker.step);
+        }
+        if (straight_back) {
+            to_end = std::min(to_end, static_cast<double>(places.size() - 1 - i) * tracker.step);
+        }
+        measured[i] = near_end(tracker, to_end, along).measure(places[i].section, 3);
         if (!good(measured[i], places[i])) {
             measured[i] = following.measure(places[i].section, 3);      // a narrow place: what followed it can measure it
         }
@@ -235,7 +267,7 @@ bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::s
             jump.push_back((d - d.dot(way[i].t) * way[i].t).norm());
             away.push_back(way[i].away / tracker.scale_at(way[i].section).spacing);
             rough.push_back(way[i].rough);
-            unsure.push_back(way[i].sigma / noise_at(tracker, way[i].section));
+            unsure.push_back(way[i].sigma / noise_of(tracker.scale_at(way[i].section)));
             sigma.push_back(std::max(way[i].sigma, 0.02 * tracker.scale_at(way[i].section).spacing));
         }
     }
@@ -250,7 +282,7 @@ std::optional<Seam> measure_track(const Tracker& following, const Track& track, 
     Tracker tracker = following;
     tracker.window_of = measuring_window;
     const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
-    std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places));
+    std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places, track.closed));
     if (!is_joint(tracker, way, places.size())) {
         return std::nullopt;
     }

@@ -77,8 +77,7 @@ End advance(const Tracker& tracker, std::vector<TrackPoint>& way, double directi
 }  // namespace
 
 std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) const {
-    const ScanScale scale = scale_at(guess);
-    const auto fit = settle_section(grid, scale, guess, window_of(scale), rounds);
+    const auto fit = settle_section(grid, scale_at(guess), guess, window_at(guess), rounds);
     if (!fit) {
         return std::nullopt;
     }

@@ -32,9 +32,14 @@ struct Tracker {
     const ScaleField& field;
     SectionWindow (*window_of)(const ScanScale&);      ///< to follow with, or to measure with
     double step = 0;                                   ///< mm between track points
+    double reach_further = 0;                          ///< mm by which windows are longer along the seam
 
     ScanScale scale_at(const Section& place) const { return field.at(place.p); }
-    SectionWindow window_at(const Section& place) const { return window_of(scale_at(place)); }
+    SectionWindow window_at(const Section& place) const {
+        SectionWindow window = window_of(scale_at(place));
+        window.along += reach_further;
+        return window;
+    }
 
     std::optional<TrackPoint> measure(const Section& guess, int rounds) const;
 };

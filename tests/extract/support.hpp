@@ -24,6 +24,24 @@ inline double length_of(const Seam& seam) {
     return length;
 }
 
+/// The seam with a point between every two, on the cubic through the four around them: chords of 0.8 mm cut 0.003 mm off a
+/// bend of 30 mm radius.
+inline Seam with_points_between(const Seam& seam) {
+    Seam finer = seam;
+    finer.points.clear();
+    const std::size_t n = seam.points.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        finer.points.push_back(seam.points[i]);
+        const bool has_four = seam.closed || (i > 0 && i + 2 < n);
+        if (has_four) {
+            const auto p = [&](std::size_t k) { return seam.points[(i + n + k - 1) % n].p; };
+            finer.points.push_back(seam.points[i]);
+            finer.points.back().p = (9 * (p(1) + p(2)) - p(0) - p(3)) / 16;
+        }
+    }
+    return finer;
+}
+
 /// Distance of p from the polyline of a seam; nothing beyond its open ends.
 inline std::optional<double> distance_across(const Seam& seam, const Eigen::Vector3d& p) {
     double nearest = 1e300;
