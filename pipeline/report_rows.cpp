@@ -102,7 +102,7 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
             number("node_chord_error_mm", "Largest chord error between nodes", part.nodes[i].max_chord_error_mm, "mm"),
             number("residual_rms_mm", "Points from fitted curve, rms", model.residual_rms_mm, "mm"),
             number("residual_max_mm", "Points from fitted curve, largest", model.residual_max_mm, "mm"),
-            number("degrees_of_freedom", "Free coefficients of the fit", model.degrees_of_freedom, "", 0),
+            number("degrees_of_freedom", "Effective coefficients of the fit", model.degrees_of_freedom, "", 0),
             number("max_curvature_per_mm", "Largest curvature", max_curvature(model.curve), "1/mm", 4),
             number("deviation_signed_mean_mm", "Deviation, signed mean", deviation.signed_mean_mm, "mm"),
             number("deviation_rms_mm", "Deviation, rms", deviation.rms_mm, "mm"),

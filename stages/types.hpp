@@ -92,7 +92,7 @@ struct SeamModel {
     std::vector<FlankSample> flanks;  ///< at least 2; closed seams: stations in [0, length), wraps round
     double residual_rms_mm = 0;       ///< orthogonal distance of the extracted points from the curve
     double residual_max_mm = 0;
-    double degrees_of_freedom = 0;  ///< free coefficients of the fit
+    double degrees_of_freedom = 0;  ///< effective: 3 times the trace of the hat matrix of one coordinate
 };
 
 /// Where one sample of the model lies relative to the scan's two flank surfaces.

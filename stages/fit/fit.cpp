@@ -2,166 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-
-#include <Eigen/Dense>
+#include <limits>
+#include <utility>
 
 #include "stages/error.hpp"
+#include "stages/fit/outliers.hpp"
+#include "stages/fit/pspline.hpp"
+#include "stages/fit/smoothing.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/robust.hpp"
-#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
 
-constexpr int kFootPointRounds = 4;      // the parameters settle to rounding level after three
-constexpr double kTukey = 4.685;
-constexpr std::size_t kLeastSpans = 4;
-
-// Chord length along the points; for a closed seam one more, back to the first.
-std::vector<double> chord_length(const Seam& seam) {
-    std::vector<double> u{0};
-    for (std::size_t i = 1; i < seam.points.size() + (seam.closed ? 1 : 0); ++i) {
-        u.push_back(u.back() + (seam.points[i % seam.points.size()].p - seam.points[i - 1].p).norm());
-    }
-    return u;
-}
-
-struct Data {
-    std::vector<Eigen::Vector3d> p;
-    std::vector<double> u, weight;      // weight: 1/sigma
-};
-
-CubicBSpline with_knots(const std::vector<double>& breaks, bool periodic) {
-    CubicBSpline curve;
-    curve.periodic = periodic;
-    if (periodic) {
-        curve.knots = breaks;
-        curve.control.resize(breaks.size() - 1);
-    } else {
-        curve.knots.assign(3, breaks.front());
-        curve.knots.insert(curve.knots.end(), breaks.begin(), breaks.end());
-        curve.knots.insert(curve.knots.end(), 3, breaks.back());
-        curve.control.resize(curve.knots.size() - 4);
-    }
-    return curve;
-}
-
-// Weighted linear least squares for the control points; `robust` are extra weights, one per point.
-void solve_control(CubicBSpline& curve, const Data& data, const std::vector<double>& robust) {
-    const auto n = static_cast<Eigen::Index>(curve.control.size());
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
-    Eigen::MatrixXd b = Eigen::MatrixXd::Zero(n, 3);
-    for (std::size_t i = 0; i < data.p.size(); ++i) {
-        const CubicBasis basis = cubic_basis(curve.knots, curve.control.size(), curve.periodic, data.u[i]);
-        const double w = data.weight[i] * data.weight[i] * robust[i];
-        for (int r = 0; r < 4; ++r) {
-            const auto row = static_cast<Eigen::Index>(basis.control[r]);
-            for (int c = 0; c < 4; ++c) {
-                A(row, static_cast<Eigen::Index>(basis.control[c])) += w * basis.value[r] * basis.value[c];
-            }
-            b.row(row) += w * basis.value[r] * data.p[i].transpose();
-        }
-    }
-    // A trace of smoothing keeps spans without weight (all outliers, a bridged gap) from floating.
-    const double trace = 1e-9 * A.trace() / static_cast<double>(n);
-    for (Eigen::Index i = 0; i < n - (curve.periodic ? 0 : 2); ++i) {
-        const Eigen::Index k[3] = {i, (i + 1) % n, (i + 2) % n};
-        const double d[3] = {1, -2, 1};
-        for (int r = 0; r < 3; ++r) {
-            for (int c = 0; c < 3; ++c) {
-                A(k[r], k[c]) += trace * d[r] * d[c];
-            }
-        }
-    }
-    const Eigen::MatrixXd x = A.ldlt().solve(b);
-    ensure(x.allFinite(), "control points of a least-squares spline are finite");
-    for (Eigen::Index i = 0; i < n; ++i) {
-        curve.control[static_cast<std::size_t>(i)] = x.row(i).transpose();
-    }
-}
-
-// Least squares of the orthogonal distances: control points and foot points in turn, Tukey weights on distance / sigma.
-CubicBSpline orthogonal_fit(Data& data, const std::vector<double>& breaks, bool periodic, std::vector<double>& residual) {
-    CubicBSpline curve = with_knots(breaks, periodic);
-    std::vector<double> robust(data.p.size(), 1);
-    residual.assign(data.p.size(), 0);
-    for (int round = 0; round < kFootPointRounds; ++round) {
-        solve_control(curve, data, robust);
-        std::vector<double> relative;
-        for (std::size_t i = 0; i < data.p.size(); ++i) {
-            // The ends of an open curve stay where the seam's ends are.
-            if (periodic || (i > 0 && i + 1 < data.p.size())) {
-                data.u[i] = nearest_parameter(curve, data.p[i], data.u[i]);
-            }
-            residual[i] = (position(curve, data.u[i]) - data.p[i]).norm();
-            relative.push_back(residual[i] * data.weight[i]);
-        }
-        const double scale = std::max(1.0, 1.2 * quantile(relative, 0.5));
-        for (std::size_t i = 0; i < data.p.size(); ++i) {
-            const double x = residual[i] * data.weight[i] / (kTukey * scale);
-            robust[i] = x < 1 ? (1 - x * x) * (1 - x * x) : 0;
-        }
-    }
-    return curve;
-}
-
-// Spans, as indices of breaks, in which the residuals are larger than sigma explains and which can be halved.
-std::set<std::size_t> poor_spans(const Data& data, const std::vector<double>& residual, const std::vector<double>& breaks, double limit) {
-    std::vector<double> square(breaks.size(), 0), count(breaks.size(), 0);
-    for (std::size_t i = 0; i < data.p.size(); ++i) {
-        const auto above = std::upper_bound(breaks.begin(), breaks.end(), data.u[i]) - breaks.begin();
-        const auto span = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(breaks.size()) - 2));
-        const double r = std::min(residual[i] * data.weight[i], 5.0);
-        square[span] += r * r;
-        count[span] += 1;
-    }
-    std::set<std::size_t> poor;
-    for (std::size_t span = 0; span + 1 < breaks.size(); ++span) {
-        if (count[span] >= 6 && std::sqrt(square[span] / count[span]) > limit) {
-            poor.insert(span);
-        }
-    }
-    return poor;
-}
-
-// Every few nodes to begin with: a cubic follows a bend that takes several chords, but hardly more than a third of a right
-// angle; what it can't follow at all would pass for outliers.
-std::vector<double> first_breaks(const Seam& seam, const std::vector<double>& u, const Nodes& nodes, bool closed) {
-    constexpr std::size_t kChordsPerSpan = 4;
-    constexpr double kCosMostTurn = 0.87;      // 30 degrees
-    std::vector<double> breaks{u.front()};
-    const auto chord = [&](std::size_t k) { return (seam.points[nodes.index[k]].p - seam.points[nodes.index[k - 1]].p).normalized().eval(); };
-    std::size_t last = 0;
-    for (std::size_t k = 1; k + 1 < nodes.index.size(); ++k) {
-        const bool turned = chord(last + 1).dot(chord(k + 1)) < kCosMostTurn;
-        if (u[nodes.index[k]] > breaks.back() && (turned || (k - last >= kChordsPerSpan && k + kChordsPerSpan / 2 < nodes.index.size()))) {
-            breaks.push_back(u[nodes.index[k]]);
-            last = k;
-        }
-    }
-    breaks.push_back(u.back());
-    while (closed && breaks.size() < kLeastSpans + 1) {
-        std::vector<double> finer;
-        for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-            finer.push_back(breaks[i]);
-            finer.push_back(0.5 * (breaks[i] + breaks[i + 1]));
-        }
-        finer.push_back(breaks.back());
-        breaks = finer;
-    }
-    return breaks;
-}
+constexpr int kRounds = 4;  // a fifth moves the curve by less than a hundredth of its error
 
 // Normals averaged over a few neighbours: a torch should not shake with the noise of single fits.
-std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model, const Data& data) {
+std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model, const std::vector<double>& u) {
     constexpr std::ptrdiff_t kHalf = 3;
     const ArcLength arc(model.curve);
     const auto n = static_cast<std::ptrdiff_t>(seam.points.size());
     std::vector<FlankSample> samples;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
         FlankSample sample;
-        sample.station_mm = arc.station(data.u[static_cast<std::size_t>(i)]);
+        sample.station_mm = arc.station(u[static_cast<std::size_t>(i)]);
         sample.n1 = sample.n2 = Eigen::Vector3d::Zero();
         const std::ptrdiff_t half = seam.closed ? kHalf : std::min({kHalf, i, n - 1 - i});
         for (std::ptrdiff_t k = -half; k <= half; ++k) {
@@ -176,68 +40,212 @@ std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model,
         sample.modelled = p.modelled;
         samples.push_back(sample);
     }
-    std::stable_sort(samples.begin(), samples.end(), [](const FlankSample& a, const FlankSample& b) { return a.station_mm < b.station_mm; });
+    std::stable_sort(samples.begin(), samples.end(),
+                     [](const FlankSample& a, const FlankSample& b) { return a.station_mm < b.station_mm; });
     return samples;
 }
 
-}  // namespace
-
-Fields describe(FitOptions& o) {
-    return {{"max_residual_sigma", &o.max_residual_sigma,
-             "largest rms of residual / sigma between two knots before the span is halved", above(0)}};
-}
-
-SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
-    if (seam.points.size() < 6) {
-        throw InputError("fit: the seam has " + std::to_string(seam.points.size()) + " points; at least 6 are needed; lower extract.station_mm");
-    }
-    Data data;
-    data.u = chord_length(seam);
-    std::vector<double> breaks = first_breaks(seam, data.u, nodes, seam.closed);
-    const double period = data.u.back();
-    data.u.resize(seam.points.size());
+// Weights 1/sigma^2. A sigma far below the usual would let one point hold the curve.
+CurvePoints points_of(const Seam& seam, const Eigen::Vector3d& middle) {
     std::vector<double> sigma;
     for (const SeamPoint& point : seam.points) {
         sigma.push_back(point.sigma_mm);
     }
-    const double least_sigma = std::max(1e-6, 0.1 * quantile(sigma, 0.5));
+    const double least = std::max(1e-6, 0.1 * quantile(sigma, 0.5));
+    CurvePoints points;
     for (const SeamPoint& point : seam.points) {
-        data.p.push_back(point.p);
-        data.weight.push_back(1 / std::max(point.sigma_mm, least_sigma));
+        points.p.push_back(point.p - middle);
+        points.weight.push_back(std::pow(std::max(point.sigma_mm, least), -2));
     }
-    const std::vector<double> chord = data.u;
-    std::vector<double> residual;
+    points.u.assign(points.p.size(), 0);
+    return points;
+}
+
+// Parameters by chord length. No chord counts for more than those that span it, so that a point off to a side makes no
+// detour. Returns the parameter of the end: where a closed curve is back at its first point.
+double set_parameters(CurvePoints& points, const std::vector<Eigen::Vector3d>& q, bool closed) {
+    const auto n = static_cast<std::ptrdiff_t>(q.size());
+    constexpr std::pair<int, int> kSpanning[] = {{-1, 0}, {-2, 0}, {-1, 1}, {-2, 1}, {-3, 1}, {-2, 2}};
+    double u = 0;
+    points.u.assign(q.size(), 0);
+    for (std::ptrdiff_t i = 1; i < n + (closed ? 1 : 0); ++i) {
+        double step = std::numeric_limits<double>::infinity();
+        for (const auto& [before, behind] : kSpanning) {
+            if (closed || (i + before >= 0 && i + behind < n)) {
+                const auto at = [&](std::ptrdiff_t k) { return q[static_cast<std::size_t>((k + 3 * n) % n)]; };
+                step = std::min(step, (at(i + behind) - at(i + before)).norm());
+            }
+        }
+        u += step;
+        if (i < n) {
+            points.u[static_cast<std::size_t>(i)] = u;
+        }
+    }
+    return u;
+}
+
+// A break at every point, but for those that crowd.
+std::vector<double> breaks_at(const CurvePoints& points, double end) {
+    const double apart = 0.3 * end / static_cast<double>(points.p.size());
+    std::vector<double> breaks{0};
+    for (const double u : points.u) {
+        if (u > breaks.back() + apart && u < end - apart) {
+            breaks.push_back(u);
+        }
+    }
+    breaks.push_back(end);
+    return breaks;
+}
+
+// Merges spans in which the curve is stiff, so that about so many are left for each coefficient it uses.
+void thin(std::vector<double>& breaks, Smoothing& s, const PenalisedSpline& spline) {
+    constexpr double kSpansPerFreedom = 3, kFewestSpans = 8;
+    const double longest = (breaks.back() - breaks.front()) / kFewestSpans;
+    std::vector<double> kept{breaks.front()}, lambda;
+    double due = 0, log_lambda = 0;
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+        due += kSpansPerFreedom * spline.freedom(k, s.lambda[k]);
+        log_lambda += (breaks[k + 1] - breaks[k]) * std::log(s.lambda[k]);
+        if (due >= 1 || k + 2 == breaks.size() || breaks[k + 2] - kept.back() > longest) {
+            lambda.push_back(std::exp(log_lambda / (breaks[k + 1] - kept.back())));
+            kept.push_back(breaks[k + 1]);
+            due = std::clamp(due - 1, 0.0, 1.0);
+            log_lambda = 0;
+        }
+    }
+    breaks = std::move(kept);
+    s.lambda = std::move(lambda);
+}
+
+// Parameters of the points of the curve nearest to the points. The ends of an open curve stay where the seam's ends
+// are.
+void project(CurvePoints& points, const CubicBSpline& curve) {
+    const std::size_t fixed_end = curve.periodic ? 0 : 1;
+    for (std::size_t i = fixed_end; i + fixed_end < points.p.size(); ++i) {
+        points.u[i] = nearest_parameter(curve, points.p[i], points.u[i]);
+    }
+}
+
+// New parameters for points and breaks: length along the curve. Uneven speed would count as roughness.
+void measure_along(CurvePoints& points, std::vector<double>& breaks, const CubicBSpline& curve) {
+    constexpr int kPieces = 4;
+    std::vector<double> u{breaks.front()}, length{0};
+    Eigen::Vector3d last = position(curve, u[0]);
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+        for (int piece = 1; piece <= kPieces; ++piece) {
+            u.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * piece / kPieces);
+            const Eigen::Vector3d p = position(curve, piece < kPieces ? u.back() : std::nextafter(u.back(), 0.0));
+            length.push_back(length.back() + (p - last).norm());
+            last = p;
+        }
+    }
+    const auto along = [&](double x) {
+        const auto k =
+            std::clamp<std::ptrdiff_t>(std::upper_bound(u.begin(), u.end(), x) - u.begin(), 1, std::ssize(u) - 1);
+        const auto i = static_cast<std::size_t>(k);
+        return length[i - 1] + (length[i] - length[i - 1]) * (x - u[i - 1]) / (u[i] - u[i - 1]);
+    };
+    for (double& x : points.u) {
+        x = along(x);
+    }
+    for (double& x : breaks) {
+        x = along(x);
+    }
+}
+
+// The first round finds about how free the curve is, on knots at every point; the second whether that hangs on the
+// place.
+void choose_smoothing(PenalisedSpline& spline, const CurvePoints& points, Smoothing& s, int round, bool& uneven) {
+    if (round == 0) {
+        smooth_evenly(spline, points, s);
+        return;
+    }
+    if (round == 1) {
+        smooth_evenly(spline, points, s);
+        Smoothing even = s;
+        const double even_risk = set_level(spline, points, even);
+        smooth_locally(spline, points, s);
+        uneven = set_level(spline, points, s) < even_risk;
+        s = uneven ? s : even;
+    } else if (round == 2 && uneven) {
+        smooth_evenly(spline, points, s);
+        smooth_locally(spline, points, s);
+    }
+    set_level(spline, points, s);
+}
+
+struct Fitted {
+    CubicBSpline curve;
+    double freedom;
+};
+
+Fitted fit_curve(CurvePoints& points, bool closed) {
+    double end = set_parameters(points, points.p, closed);
+    if (!(end > 0)) {
+        throw InputError("fit: the seam has no length; all its points coincide; check the scan");
+    }
+    const Loose loose = drop_outliers(points, breaks_at(points, end), closed);
+    const std::vector<double> given = points.weight;
+    std::vector<Eigen::Vector3d> q;
+    for (const double u : points.u) {
+        q.push_back(position(loose.curve, u));
+    }
+    end = set_parameters(points, q, closed);
+    std::vector<double> breaks = breaks_at(points, end);
+    Smoothing s;
+    s.lambda = loose_lambda(points, breaks);
+    CubicBSpline curve;
+    bool uneven = false;
+    for (int round = 0; round < kRounds; ++round) {
+        PenalisedSpline spline(breaks, closed);
+        spline.take(points);
+        choose_smoothing(spline, points, s, round, uneven);
+        project(points, spline.curve());
+        weigh(points, given, loose.bulge, spline.curve());
+        curve = spline.curve();
+        if (round + 1 < kRounds) {
+            thin(breaks, s, spline);
+            measure_along(points, breaks, curve);
+        }
+    }
+    return {std::move(curve), s.freedom};
+}
+
+}  // namespace
+
+Fields describe(FitOptions&) {
+    return {};
+}
+
+SeamModel fit(const Seam& seam, const Nodes&, const FitOptions&) {
+    if (seam.points.size() < 6) {
+        throw InputError("fit: the seam has " + std::to_string(seam.points.size()) +
+                         " points; at least 6 are needed; lower extract.station_mm");
+    }
+    // Coordinates about the middle: rounding then hangs on the seam's size, not on where it lies.
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const SeamPoint& point : seam.points) {
+        middle += point.p / static_cast<double>(seam.points.size());
+    }
+    CurvePoints points = points_of(seam, middle);
+    auto [curve, freedom] = fit_curve(points, seam.closed);
     SeamModel model;
     model.kind = seam.kind;
     model.closed = seam.closed;
-    while (true) {
-        data.u = chord;
-        model.curve = orthogonal_fit(data, breaks, seam.closed, residual);
-        const std::set<std::size_t> poor = poor_spans(data, residual, breaks, options.max_residual_sigma);
-        if (poor.empty() || 2 * breaks.size() > seam.points.size()) {
-            break;
-        }
-        std::vector<double> finer;
-        for (std::size_t i = 0; i < breaks.size(); ++i) {
-            finer.push_back(breaks[i]);
-            if (poor.contains(i)) {
-                finer.push_back(0.5 * (breaks[i] + breaks[i + 1]));
-            }
-        }
-        breaks = std::move(finer);
-    }
-    if (!(period > 0)) {
-        throw InputError("fit: the seam has no length; all its points coincide; check the scan");
-    }
-    model.length_mm = ArcLength(model.curve).length();
-    model.flanks = flank_samples(seam, model, data);
     double sum = 0;
-    for (const double r : residual) {
+    for (std::size_t i = 0; i < points.p.size(); ++i) {
+        const double r = (position(curve, points.u[i]) - points.p[i]).norm();
         sum += r * r;
         model.residual_max_mm = std::max(model.residual_max_mm, r);
     }
-    model.residual_rms_mm = std::sqrt(sum / static_cast<double>(residual.size()));
-    model.degrees_of_freedom = 3 * static_cast<double>(model.curve.control.size());
+    model.residual_rms_mm = std::sqrt(sum / static_cast<double>(points.p.size()));
+    model.degrees_of_freedom = 3 * freedom;
+    for (Eigen::Vector3d& control : curve.control) {
+        control += middle;
+    }
+    model.curve = std::move(curve);
+    model.length_mm = ArcLength(model.curve).length();
+    model.flanks = flank_samples(seam, model, points.u);
     return model;
 }
 

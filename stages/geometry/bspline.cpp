@@ -57,9 +57,15 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
         const auto above = std::upper_bound(knots.begin(), knots.end(), u) - knots.begin();
         const std::ptrdiff_t span = std::clamp<std::ptrdiff_t>(above - 1, 0, n - 1);
         for (std::ptrdiff_t k = 0; k < 8; ++k) {
-            const std::ptrdiff_t j = span + k - 3;
-            const std::ptrdiff_t turn = j >= 0 ? j / n : -((-j + n - 1) / n);
-            t[k] = knots[j - turn * n] + static_cast<double>(turn) * period;
+            std::ptrdiff_t j = span + k - 3;
+            double turns = 0;
+            for (; j < 0; j += n) {
+                turns -= 1;
+            }
+            for (; j >= n; j -= n) {
+                turns += 1;
+            }
+            t[k] = knots[j] + turns * period;
         }
         for (std::ptrdiff_t k = 0; k < 4; ++k) {
             basis.control[k] = static_cast<std::size_t>((span + k) % n);
@@ -184,14 +190,14 @@ double ArcLength::parameter(double station) const {
 double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, double start) {
     const double first = first_parameter(curve), last = last_parameter(curve);
     double u = start;
-    double best = (position(curve, u) - p).squaredNorm();
+    CubicBasis basis = basis_at(curve, u);
+    Eigen::Vector3d r = combine(curve, basis, basis.value) - p;
     for (int iteration = 0; iteration < 20; ++iteration) {
-        const Eigen::Vector3d r = position(curve, u) - p;
-        const Eigen::Vector3d d1 = derivative(curve, u);
+        const Eigen::Vector3d d1 = combine(curve, basis, basis.d1);
         const double slope = r.dot(d1);
-        double bend = d1.squaredNorm() + r.dot(second_derivative(curve, u));
+        double bend = d1.squaredNorm() + r.dot(combine(curve, basis, basis.d2));
         if (bend <= 0.1 * d1.squaredNorm()) {
-            bend = d1.squaredNorm();      // near the centre of curvature Newton's step would leave: Gauss-Newton's does not
+            bend = d1.squaredNorm();  // near the centre of curvature Newton's step would leave: Gauss-Newton's does not
         }
         double step = -slope / bend;
         bool moved = false;
@@ -200,11 +206,16 @@ double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, do
             if (!curve.periodic) {
                 next = std::clamp(next, first, last);
             }
-            const double distance = (position(curve, next) - p).squaredNorm();
-            if (distance < best) {
+            const CubicBasis trial = basis_at(curve, next);
+            const Eigen::Vector3d off = combine(curve, trial, trial.value) - p;
+            if (off.squaredNorm() < r.squaredNorm()) {
                 moved = std::abs(next - u) > 1e-13 * (last - first);
-                best = distance;
+                basis = trial;
+                r = off;
                 u = next;
+                break;
+            }
+            if (std::abs(next - u) <= 1e-13 * (last - first)) {
                 break;
             }
         }

@@ -21,13 +21,54 @@ Seam reversed(Seam seam) {
 }
 
 TEST(Fit, RecoversKnownCurves) {
-    // Points of sigma 0.01 mm: a spline that is off by less than the points' own uncertainty needs no more knots.
-    EXPECT_LT(largest_error(model_of(seam_along(Circle{30}, 250, true)), Circle{30}), 0.02);
-    EXPECT_LT(largest_error(model_of(seam_along(Helix{25, 12, 1.5}, 400, false)), Helix{25, 12, 1.5}), 0.02);
-    EXPECT_LT(largest_error(model_of(seam_along(SineCurve{200, 18}, 300, false)), SineCurve{200, 18}), 0.02);
+    // Exact points, whatever sigma they state: what is left is how far a cubic spline through them is from the curve.
+    EXPECT_LT(largest_error(model_of(seam_along(Circle{30}, 250, true)), Circle{30}), 1e-5);
+    EXPECT_LT(largest_error(model_of(seam_along(Helix{25, 12, 1.5}, 400, false)), Helix{25, 12, 1.5}), 1e-5);
+    EXPECT_LT(largest_error(model_of(seam_along(SineCurve{200, 18}, 300, false)), SineCurve{200, 18}), 3e-5);
     EXPECT_LT(largest_error(model_of(seam_along(Straight{{5, -3, 2}, {95, 10, 30}}, 90, false)),
                             Straight{{5, -3, 2}, {95, 10, 30}}),
               1e-6);
+}
+
+TEST(Fit, TakesSixPoints) {
+    const Straight line{{5, -3, 2}, {95, 10, 30}};
+    EXPECT_LT(largest_error(model_of(seam_along(line, 6, false)), line), 1e-6);
+    EXPECT_LT(largest_error(model_of(noisy(seam_along(line, 6, false), 0.03, 3)), line), 0.1);
+    EXPECT_LT(largest_error(model_of(seam_along(Circle{30}, 8, true)), Circle{30}), 0.05);
+}
+
+TEST(Fit, DoesNotFloatWherePointsAreMissing) {
+    constexpr double kSigma = 0.02;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        Seam circle = noisy(seam_along(Circle{30}, 250, true), kSigma, seed);
+        circle.points.erase(circle.points.begin() + 60, circle.points.begin() + 75);  // 11 mm
+        EXPECT_LT(largest_error(model_of(circle), Circle{30}), 5 * kSigma) << "seed " << seed;
+        const Straight line{{0, 0, 0}, {90, 0, 0}};
+        Seam straight = noisy(seam_along(line, 91, false), kSigma, seed);
+        straight.points.erase(straight.points.begin() + 30, straight.points.begin() + 60);
+        EXPECT_LT(largest_error(model_of(straight), line), 5 * kSigma) << "seed " << seed;
+    }
+}
+
+TEST(Fit, EndsWhereTheSeamEnds) {
+    constexpr double kSigma = 0.02;
+    const SineCurve sine{200, 18};
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const SeamModel model = model_of(noisy(seam_along(sine, 300, false), kSigma, seed));
+        EXPECT_LT((position(model.curve, first_parameter(model.curve)) - sine(0)).norm(), 3 * kSigma);
+        EXPECT_LT((position(model.curve, last_parameter(model.curve)) - sine(1)).norm(), 3 * kSigma);
+    }
+}
+
+TEST(Fit, CountsTheFreedomItTakes) {
+    const Straight line{{0, 0, 0}, {90, 0, 0}};
+    const SeamModel straight = model_of(noisy(seam_along(line, 200, false), 0.02, 1));
+    EXPECT_GE(straight.degrees_of_freedom, 3 * 2.99);  // a parabola is free
+    EXPECT_LT(straight.degrees_of_freedom, 3 * 8);
+    const SeamModel wave = model_of(noisy(seam_along(SineCurve{200, 18}, 300, false), 0.02, 1));
+    EXPECT_GT(wave.degrees_of_freedom, 3 * 8);
+    EXPECT_LT(wave.degrees_of_freedom, 3 * 60);
+    EXPECT_LT(wave.degrees_of_freedom, 3 * static_cast<double>(wave.curve.control.size()));
 }
 
 TEST(Fit, KnowsTheLength) {

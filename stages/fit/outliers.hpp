@@ -1,0 +1,22 @@
+#pragma once
+
+#include "stages/fit/pspline.hpp"
+
+/// Points that are off from what their neighbours agree on, told from bends, in which all neighbours take part.
+namespace seampath {
+
+struct Loose {
+    CubicBSpline curve;  ///< follows the points closely, with a knot at each
+    std::vector<double>
+        bulge;  ///< mm, one per point: how far a point may be off its neighbours because the curve turns
+};
+
+/// Sets the weight of such points to zero, against a loose curve; one after the other where they stand close, each
+/// judged by how far it is from the curve without it.
+Loose drop_outliers(CurvePoints& points, const std::vector<double>& breaks, bool closed);
+
+/// Weights of the points by Tukey's biweight on the distances from a curve, times the weights `given`.
+void weigh(CurvePoints& points, const std::vector<double>& given, const std::vector<double>& bulge,
+           const CubicBSpline& curve);
+
+}  // namespace seampath
