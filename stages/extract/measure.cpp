@@ -147,13 +147,13 @@ Tracker near_end(const Tracker& tracker, double to_end, double along) {
 // Shortens or lengthens one end so that it lies where the first flank ends. Judged from a few steps inside, where both
 // flanks are whole: fits at the end itself have data on one side only.
 void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front) {
-    constexpr std::size_t kInside = 4;
+    constexpr std::size_t kInside = 4, kMostWeak = 3;
     if (front) {
         std::reverse(way.begin(), way.end());
     }
     // Places that saw much less than those a little further in, through a hole or with no flank ahead, are no end to carry on.
     const auto weak = [&] { return way.back().modelled || way.back().sigma > 2 * way[way.size() - 1 - kInside].sigma; };
-    while (way.size() > 2 * kInside && weak()) {
+    for (std::size_t k = 0; k < kMostWeak && way.size() > 2 * kInside && weak(); ++k) {
         way.pop_back();
     }
     const TrackPoint inner = way[way.size() - 1 - kInside];
@@ -164,8 +164,8 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     const double reach = reach_ahead(tracker, inner, direction, look) - spacing;
     const auto ahead = [&](const TrackPoint& p) { return direction * (p.section.p - inner.section.p).dot(inner.t); };
     // The last point lies a point distance or two, of a flank that fewer views see, before the end of the look.
-    if (reach + 4 * spacing >= look || reach > ahead(way.back()) + 10 * tracker.step) {
-        // The flanks go on: following ended for another reason, and that reason stands.
+    if (reach + 4 * spacing >= look || reach > ahead(way.back()) + (kMostWeak + 1.5) * tracker.step) {
+        // The flanks go on: following ended for another reason, and that reason stands. Nothing is carried on far.
         if (front) {
             std::reverse(way.begin(), way.end());
         }
