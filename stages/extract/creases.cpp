@@ -12,15 +12,15 @@
 namespace seampath::detail {
 namespace {
 
-constexpr int kTrials = 48;                   // a half of the surfels on one plane: failure chance (1 - 1/8)^48 = 0.2 %
+constexpr int kTrials = 48;  // a half of the surfels on one plane: failure chance (1 - 1/8)^48 = 0.2 %
 constexpr double kLeastBend = 20 * std::numbers::pi / 180;
-constexpr double kLeastShare = 0.15;          // of the neighbours, on each plane
+constexpr double kLeastShare = 0.15;  // of the neighbours, on each plane
 constexpr double kMostUnexplained = 0.25;
-constexpr double kFoldShare = 0.85;           // of a plane's surfels, on its own side of the crease
+constexpr double kFoldShare = 0.85;  // of a plane's surfels, on its own side of the crease
 
 struct Plane {
     Eigen::Vector3d n{0, 0, 0};
-    double d = 0;      // n.x = d
+    double d = 0;  // n.x = d
     double distance(const Eigen::Vector3d& x) const { return std::abs(n.dot(x) - d); }
 };
 
@@ -33,7 +33,8 @@ std::uint32_t mix(std::uint64_t x) {
     return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 16);
 }
 
-std::optional<Plane> through(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, double least_area) {
+std::optional<Plane> through(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                             double least_area) {
     const Eigen::Vector3d n = (b - a).cross(c - a);
     const double area = n.norm();
     if (area < least_area) {
@@ -47,7 +48,11 @@ std::optional<Plane> consensus_plane(const Points& x, double tolerance, double l
     std::optional<Plane> best;
     std::size_t most = 3;
     for (int trial = 0; trial < kTrials && x.size() > 3; ++trial) {
-        const auto pick = [&](int k) { return mix(stream * 1000003 + static_cast<std::uint64_t>(trial) * 31 + static_cast<std::uint64_t>(k) * 7919) % x.size(); };
+        const auto pick = [&](int k) {
+            return mix(stream * 1000003 + static_cast<std::uint64_t>(trial) * 31 +
+                       static_cast<std::uint64_t>(k) * 7919) %
+                   x.size();
+        };
         const auto plane = through(x[pick(1)], x[pick(2)], x[pick(3)], least_area);
         if (!plane) {
             continue;
@@ -85,7 +90,7 @@ std::optional<Plane> fitted(const Points& x) {
 
 struct Split {
     Plane plane[2];
-    std::vector<std::size_t> member[2];      // indices into the points
+    std::vector<std::size_t> member[2];  // indices into the points
     std::size_t unexplained = 0;
 };
 
@@ -142,7 +147,8 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
 std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, const Points& x, const Split& split) {
     const auto n = static_cast<double>(x.size());
     if (static_cast<double>(split.unexplained) > kMostUnexplained * n ||
-        static_cast<double>(std::min(split.member[0].size(), split.member[1].size())) < std::max(6.0, kLeastShare * n)) {
+        static_cast<double>(std::min(split.member[0].size(), split.member[1].size())) <
+            std::max(6.0, kLeastShare * n)) {
         return std::nullopt;
     }
     Crease crease;
@@ -183,7 +189,7 @@ std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, co
     }
     const double side0 = away[0].dot(normal[1]), side1 = away[1].dot(normal[0]);
     if (side0 * side1 <= 0) {
-        return std::nullopt;      // the two normals do not agree on the side of the air
+        return std::nullopt;  // the two normals do not agree on the side of the air
     }
     crease.concave = side0 > 0;
     crease.p = centre.p + foot;
@@ -202,8 +208,8 @@ std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field
     std::vector<std::optional<Crease>> found(surfels.at.size());
     parallel_for(surfels.at.size(), 64, [&](std::size_t i) {
         const Surfel& s = surfels.at[i];
-        // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain. One of two surfaces
-        // may be seen at a slant, and be noisier than the place as a whole.
+        // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain. One of two
+        // surfaces may be seen at a slant, and be noisier than the place as a whole.
         const double least = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
         if (s.neighbours.size() < 20 || s.flatness < 0.75 * least) {
             return;

@@ -21,16 +21,17 @@ namespace {
 using namespace detail;
 
 constexpr std::size_t kLeastPoints = 200;
-constexpr double kLeastLength = 10;      // of a seam, in point distances
+constexpr double kLeastLength = 10;  // of a seam, in point distances
 
 // As fine as the points allow, so that narrow faces are seen; coarser where a large scan would make too many cells.
 double cell_size(const ScanScale& scale, std::size_t points) {
     constexpr double kCells = 60000;
-    return std::max(std::clamp(std::sqrt(static_cast<double>(points) / kCells), 2.5, 4.0) * scale.spacing, 2 * scale.noise);
+    return std::max(std::clamp(std::sqrt(static_cast<double>(points) / kCells), 2.5, 4.0) * scale.spacing,
+                    2 * scale.noise);
 }
 
-// Concave creases, heaviest first. Where nothing told the air from the material of a piece, its joints do: a scan made to find
-// a seam shows more of concave joints than of convex edges.
+// Concave creases, heaviest first. Where nothing told the air from the material of a piece, its joints do: a scan made
+// to find a seam shows more of concave joints than of convex edges.
 std::vector<Crease> seeds_of(std::vector<Crease> creases) {
     std::map<std::uint32_t, double> balance;
     for (const Crease& c : creases) {
@@ -44,7 +45,8 @@ std::vector<Crease> seeds_of(std::vector<Crease> creases) {
         }
     }
     std::erase_if(creases, [](const Crease& c) { return !c.concave; });
-    std::stable_sort(creases.begin(), creases.end(), [](const Crease& a, const Crease& b) { return a.weight > b.weight; });
+    std::stable_sort(creases.begin(), creases.end(),
+                     [](const Crease& a, const Crease& b) { return a.weight > b.weight; });
     return creases;
 }
 
@@ -78,14 +80,16 @@ double length_of(const Points& points, Position&& position) {
 }
 
 // Adds the seam along the track to the result, or a remark why it is none.
-void add_seam(Extraction& result, const Tracker& tracker, const Track& track, double min_length, const Eigen::Vector3d& origin) {
+void add_seam(Extraction& result, const Tracker& tracker, const Track& track, double min_length,
+              const Eigen::Vector3d& origin) {
     const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
     const double least = min_length > 0 ? min_length : kLeastLength * spacing;
     double length = length_of(track.points, [](const TrackPoint& p) { return p.section.p; });
     if (length >= least) {
         auto seam = measure_track(tracker, track, origin);
         if (!seam) {
-            result.remarks.push_back("a crease of " + fixed(length, 1) + " mm was left out: its flanks are too narrow or too rough for a joint");
+            result.remarks.push_back("a crease of " + fixed(length, 1) +
+                                     " mm was left out: its flanks are too narrow or too rough for a joint");
             return;
         }
         length = length_of(seam->points, [](const SeamPoint& p) { return p.p; });
@@ -94,25 +98,29 @@ void add_seam(Extraction& result, const Tracker& tracker, const Track& track, do
             return;
         }
     }
-    result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least, 1) + " mm");
+    result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least, 1) +
+                             " mm");
 }
 
 }  // namespace
 
 Fields describe(ExtractOptions& o) {
-    return {{"joint", choice(o.joint, kJointChoiceNames), "joint kind to look for"},
-            {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
-            {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
+    return {
+        {"joint", choice(o.joint, kJointChoiceNames), "joint kind to look for"},
+        {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
+        {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
 }
 
 Extraction extract(const Scan& scan, const ExtractOptions& options) {
     if (options.joint != JointChoice::automatic && options.joint != JointChoice::fillet) {
-        throw InputError("extract: joint kind '" + std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
+        throw InputError("extract: joint kind '" +
+                         std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
                          "' is not followed yet; fillet is; set extract.joint to auto or fillet");
     }
     if (scan.points.size() < kLeastPoints) {
         throw InputError("extract: the scan has " + std::to_string(scan.points.size()) + " points; at least " +
-                         std::to_string(kLeastPoints) + " are needed to fit two surfaces; scan the part with a finer pitch");
+                         std::to_string(kLeastPoints) +
+                         " are needed to fit two surfaces; scan the part with a finer pitch");
     }
     Extraction result;
     const ScaleField field = estimate_scale(scan.points);
@@ -132,7 +140,8 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
         add_seam(result, tracker, track, options.min_length_mm, scan.origin_mm);
     }
-    std::stable_sort(result.seams.begin(), result.seams.end(), [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
+    std::stable_sort(result.seams.begin(), result.seams.end(),
+                     [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
     return result;
 }
 

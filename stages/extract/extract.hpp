@@ -10,23 +10,23 @@
 namespace seampath {
 
 enum class JointChoice { automatic, fillet, lap, butt, v_groove, corner, saddle };
-inline constexpr std::array<std::string_view, 7> kJointChoiceNames{"auto", "fillet",   "lap",    "butt",
+inline constexpr std::array<std::string_view, 7> kJointChoiceNames{"auto",     "fillet", "lap",   "butt",
                                                                    "v-groove", "corner", "saddle"};
 
 struct ExtractOptions {
     JointChoice joint = JointChoice::automatic;
-    double min_length_mm = 0;     ///< 0: from the scan
-    double station_mm = 0;        ///< 0: from the scan
+    double min_length_mm = 0;  ///< 0: from the scan
+    double station_mm = 0;     ///< 0: from the scan
 };
 Fields describe(ExtractOptions&);
 
 /// The seams found, and the numbers that extraction took from the scan.
 struct Extraction {
-    std::vector<Seam> seams;            ///< longest first
-    double spacing_mm = 0;              ///< typical distance of neighbouring points on one surface
-    double noise_mm = 0;                ///< rms of points about locally fitted surfaces
-    std::string orientation_reason;     ///< how the side of the air was told from the side of the material
-    std::vector<std::string> remarks;   ///< one sentence each, e.g. a candidate that was dropped and why
+    std::vector<Seam> seams;           ///< longest first
+    double spacing_mm = 0;             ///< typical distance of neighbouring points on one surface
+    double noise_mm = 0;               ///< rms of points about locally fitted surfaces
+    std::string orientation_reason;    ///< how the side of the air was told from the side of the material
+    std::vector<std::string> remarks;  ///< one sentence each, e.g. a candidate that was dropped and why
 };
 
 /// Finds every joint of the asked kind. An empty `seams` is a result, not an error.

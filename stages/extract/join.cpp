@@ -8,8 +8,8 @@
 namespace seampath::detail {
 namespace {
 
-constexpr double kMostWindows = 6;             // longest gap, in widths of the window
-constexpr double kMostShare = 0.35;            // of the length of what is joined
+constexpr double kMostWindows = 6;                              // longest gap, in widths of the window
+constexpr double kMostShare = 0.35;                             // of the length of what is joined
 constexpr double kMostAngle = 50 * std::numbers::pi / 180;      // between the ends' directions and the chord
 constexpr double kMostAsymmetry = 12 * std::numbers::pi / 180;  // between the two: an arc leaves as it arrives
 constexpr double kMostTwist = 60 * std::numbers::pi / 180;      // of a flank normal across the gap
@@ -22,7 +22,9 @@ double length_of(const Track& track) {
     return length;
 }
 
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 // A representative of an end: the last few points of a track have data on one side only.
 const TrackPoint& firm_end(const Track& track, bool front) {
@@ -33,7 +35,8 @@ const TrackPoint& firm_end(const Track& track, bool front) {
 // Cubic from a to b with the measured directions at both.
 TrackPoint between(const TrackPoint& a, const TrackPoint& b, double x) {
     const double length = (b.section.p - a.section.p).norm() * (1 + angle(a.t, b.t) * angle(a.t, b.t) / 24);
-    const double h00 = (1 + 2 * x) * (1 - x) * (1 - x), h10 = x * (1 - x) * (1 - x), h01 = x * x * (3 - 2 * x), h11 = x * x * (x - 1);
+    const double h00 = (1 + 2 * x) * (1 - x) * (1 - x), h10 = x * (1 - x) * (1 - x), h01 = x * x * (3 - 2 * x),
+                 h11 = x * x * (x - 1);
     TrackPoint p = a;
     p.section.p = h00 * a.section.p + h01 * b.section.p + length * (h10 * a.t + h11 * b.t);
     p.section.n1 = ((1 - x) * a.section.n1 + x * b.section.n1).normalized();
@@ -57,7 +60,8 @@ bool flank_goes_through(const Tracker& tracker, const TrackPoint& place, double 
         tracker.grid.for_points_in_ball(at.p, std::hypot(far, slab), [&](const Eigen::Vector3f& q, double) {
             const Eigen::Vector3d v = q.cast<double>() - at.p;
             const double u = v.dot(d[k]), z = std::abs(v.dot(n[k]));
-            beyond += u < -band && u > -far && std::abs(v.dot(place.t)) < slab && z < 4 * scale.noise + 0.1 * std::abs(u);
+            beyond +=
+                u < -band && u > -far && std::abs(v.dot(place.t)) < slab && z < 4 * scale.noise + 0.1 * std::abs(u);
         });
         if (beyond > 0.3 * density * 2 * slab * (far - band)) {
             return true;
@@ -68,8 +72,8 @@ bool flank_goes_through(const Tracker& tracker, const TrackPoint& place, double 
 
 struct Bridge {
     double cost = 0;
-    std::size_t from = 0, to = 0;      // the end of track `from` meets the beginning of track `to`,
-    bool turn_from = false, turn_to = false;      // each perhaps turned round first
+    std::size_t from = 0, to = 0;             // the end of track `from` meets the beginning of track `to`,
+    bool turn_from = false, turn_to = false;  // each perhaps turned round first
     std::vector<TrackPoint> points;
 };
 
@@ -79,7 +83,8 @@ std::optional<Bridge> bridge(const Tracker& tracker, const Track& from, const Tr
     const double gap = chord.norm();
     const double supported = length_of(from) + (same ? 0 : length_of(to));
     const double leave = angle(a.t, chord), arrive = angle(chord, b.t);
-    if (gap > kMostWindows * tracker.window_at(a.section).away || gap > kMostShare * supported || std::max(leave, arrive) > kMostAngle ||
+    if (gap > kMostWindows * tracker.window_at(a.section).away || gap > kMostShare * supported ||
+        std::max(leave, arrive) > kMostAngle ||
         std::abs(leave - arrive) > kMostAsymmetry + 4 * tracker.step / (gap + tracker.step) * 0.1 ||
         angle(a.section.n1, b.section.n1) > kMostTwist || angle(a.section.n2, b.section.n2) > kMostTwist) {
         return std::nullopt;
@@ -115,7 +120,8 @@ void splice(std::vector<Track>& tracks, const Bridge& best) {
     }
     const auto firm = [](std::vector<TrackPoint>& points, bool front) {
         const auto inside = static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, points.size() - 1));
-        front ? points.erase(points.begin(), points.begin() + inside) : points.erase(points.end() - inside, points.end());
+        front ? points.erase(points.begin(), points.begin() + inside)
+              : points.erase(points.end() - inside, points.end());
     };
     std::vector<TrackPoint>& way = tracks[best.from].points;
     firm(way, false);
@@ -137,7 +143,8 @@ void splice(std::vector<Track>& tracks, const Bridge& best) {
 std::vector<Track> join_tracks(const Tracker& tracker, std::vector<Track> tracks) {
     while (true) {
         std::optional<Bridge> best;
-        const auto consider = [&](std::size_t i, std::size_t j, bool turn_i, bool turn_j, const Track& from, const Track& to) {
+        const auto consider = [&](std::size_t i, std::size_t j, bool turn_i, bool turn_j, const Track& from,
+                                  const Track& to) {
             auto candidate = bridge(tracker, from, to, i == j);
             if (candidate && (!best || candidate->cost < best->cost)) {
                 candidate->from = i, candidate->to = j, candidate->turn_from = turn_i, candidate->turn_to = turn_j;

@@ -10,8 +10,7 @@
 namespace seampath::detail {
 namespace {
 
-constexpr std::size_t kLeastPlaces = 6;      // fewer carry no curve
-
+constexpr std::size_t kLeastPlaces = 6;  // fewer carry no curve
 
 // Places at equal distances, along the polyline of the track; open tracks keep both ends.
 std::vector<TrackPoint> equal_steps(const Track& track, double step) {
@@ -33,17 +32,19 @@ std::vector<TrackPoint> equal_steps(const Track& track, double step) {
         const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
         const Section &a = way[i - 1].section, &b = way[i].section;
         TrackPoint place = x < 0.5 ? way[i - 1] : way[i];
-        place.section = {(1 - x) * a.p + x * b.p, ((1 - x) * a.n1 + x * b.n1).normalized(), ((1 - x) * a.n2 + x * b.n2).normalized()};
+        place.section = {(1 - x) * a.p + x * b.p, ((1 - x) * a.n1 + x * b.n1).normalized(),
+                         ((1 - x) * a.n2 + x * b.n2).normalized()};
         places.push_back(place);
     }
     return places;
 }
 
-// Where a stretch of points ends that holds `density` points per mm up to distance 0; `ahead`: distances beyond it. The end
-// is the likeliest change from that density to that of stray points: each point speaks for going on, each mm without points
-// against it. A hole is passed when the surface goes on behind it, and where four views become one the surface goes on.
+// Where a stretch of points ends that holds `density` points per mm up to distance 0; `ahead`: distances beyond it. The
+// end is the likeliest change from that density to that of stray points: each point speaks for going on, each mm
+// without points against it. A hole is passed when the surface goes on behind it, and where four views become one the
+// surface goes on.
 double end_of(std::vector<double>& ahead, double density) {
-    constexpr double kStray = 0.01;      // density of stray points over that of the surface
+    constexpr double kStray = 0.01;  // density of stray points over that of the surface
     const double cost = density * (1 - kStray) / -std::log(kStray);
     std::sort(ahead.begin(), ahead.end());
     double end = 0, best = 0;
@@ -59,8 +60,8 @@ double end_of(std::vector<double>& ahead, double density) {
 
 constexpr std::size_t kStrips = 6;
 
-// The straight line through y at x = first, first + step, ..., read at x = 0: medians of slopes and of intercepts (Theil and
-// Sen), so that a strip that a hole has cut short does not bend it.
+// The straight line through y at x = first, first + step, ..., read at x = 0: medians of slopes and of intercepts
+// (Theil and Sen), so that a strip that a hole has cut short does not bend it.
 double value_at_zero(const std::array<double, kStrips>& y, double first, double step) {
     std::vector<double> slope, intercept;
     for (std::size_t i = 0; i < kStrips; ++i) {
@@ -75,8 +76,9 @@ double value_at_zero(const std::array<double, kStrips>& y, double first, double 
     return quantile(intercept, 0.5);
 }
 
-// How far ahead of an inner place, in the given direction, the shorter of its two flanks reaches at the seam; mm. A flank
-// may end at a slant: the ends of strips at growing distance from the seam are carried on to the seam by a straight line.
+// How far ahead of an inner place, in the given direction, the shorter of its two flanks reaches at the seam; mm. A
+// flank may end at a slant: the ends of strips at growing distance from the seam are carried on to the seam by a
+// straight line.
 double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direction, double look) {
     const ScanScale scale = tracker.scale_at(place.section);
     const auto fit = fit_section(tracker.grid, scale, place.section, tracker.window_of(scale));
@@ -90,25 +92,27 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
     for (int k = 0; k < 2; ++k) {
         const Flank& flank = fit->flank[k];
         // Near the seam: a slanted end must still lie ahead in every strip.
-        const double spacing = 1 / std::sqrt(std::max(1e-12, flank.slab_points));      // of this flank: fewer views may see it
+        const double spacing =
+            1 / std::sqrt(std::max(1e-12, flank.slab_points));  // of this flank: fewer views may see it
         const double near = flank.window.band, strip = std::min(flank.window.away - near, 16 * spacing) / kStrips;
         std::array<std::vector<double>, kStrips> s;
         std::array<double, kStrips> density{};
         const double behind = std::min(flank.window.along, look);
-        tracker.grid.for_points_in_ball(at.p, std::hypot(near + kStrips * strip, look), [&](const Eigen::Vector3f& q, double) {
-            const Eigen::Vector3d v = q.cast<double>() - at.p;
-            const double x = v.dot(ahead), u = v.dot(d[k]);
-            if (x >= -behind && x <= look && u >= near && u < near + kStrips * strip) {
-                if (std::abs(residual(flank, u, direction * x, v.dot(n[k]))) <= gate(flank, u, x)) {
-                    const auto i = static_cast<std::size_t>((u - near) / strip);
-                    if (x > 0) {
-                        s[i].push_back(x);
-                    } else {
-                        density[i] += 1 / behind;
+        tracker.grid.for_points_in_ball(
+            at.p, std::hypot(near + kStrips * strip, look), [&](const Eigen::Vector3f& q, double) {
+                const Eigen::Vector3d v = q.cast<double>() - at.p;
+                const double x = v.dot(ahead), u = v.dot(d[k]);
+                if (x >= -behind && x <= look && u >= near && u < near + kStrips * strip) {
+                    if (std::abs(residual(flank, u, direction * x, v.dot(n[k]))) <= gate(flank, u, x)) {
+                        const auto i = static_cast<std::size_t>((u - near) / strip);
+                        if (x > 0) {
+                            s[i].push_back(x);
+                        } else {
+                            density[i] += 1 / behind;
+                        }
                     }
                 }
-            }
-        });
+            });
         std::array<double, kStrips> end;
         for (std::size_t i = 0; i < kStrips; ++i) {
             end[i] = end_of(s[i], density[i]);
@@ -120,7 +124,9 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
 
 // Whether the way runs straight, as far as noise lets it be seen, from its front or back over `length` mm.
 bool straight_end(const std::vector<TrackPoint>& way, bool front, double length, double noise) {
-    const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return way[front ? i : way.size() - 1 - i].section.p; };
+    const auto at = [&](std::size_t i) -> const Eigen::Vector3d& {
+        return way[front ? i : way.size() - 1 - i].section.p;
+    };
     std::size_t far = 0;
     while (far + 1 < way.size() && (at(far) - at(0)).norm() < length) {
         ++far;
@@ -135,9 +141,9 @@ bool straight_end(const std::vector<TrackPoint>& way, bool front, double length,
     return true;
 }
 
-// Towards a straight end the window finds flanks on one side only: it keeps their length by reaching further that way. Else
-// the place at the end, where the fit is carried on, would be the worst measured of all. Beside a bent end flanks bend too, in
-// ways that the fit does not know so far away.
+// Towards a straight end the window finds flanks on one side only: it keeps their length by reaching further that way.
+// Else the place at the end, where the fit is carried on, would be the worst measured of all. Beside a bent end flanks
+// bend too, in ways that the fit does not know so far away.
 Tracker near_end(const Tracker& tracker, double to_end, double along) {
     Tracker longer = tracker;
     longer.reach_further = std::max(0.0, along - to_end);
@@ -151,7 +157,8 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     if (front) {
         std::reverse(way.begin(), way.end());
     }
-    // Places that saw much less than those a little further in, through a hole or with no flank ahead, are no end to carry on.
+    // Places that saw much less than those a little further in, through a hole or with no flank ahead, are no end to
+    // carry on.
     const auto weak = [&] { return way.back().modelled || way.back().sigma > 2 * way[way.size() - 1 - kInside].sigma; };
     for (std::size_t k = 0; k < kMostWeak && way.size() > 2 * kInside && weak(); ++k) {
         way.pop_back();
@@ -191,13 +198,15 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     }
 }
 
-// Hundreds of points that leave the seam less sure than two scan points do not see two surfaces: fits shrink to that in the
-// smooth valleys of bent or badly fused parts.
-bool unsure(const Tracker& tracker, const TrackPoint& point) { return point.sigma > 2 * noise_of(tracker.scale_at(point.section)); }
+// Hundreds of points that leave the seam less sure than two scan points do not see two surfaces: fits shrink to that in
+// the smooth valleys of bent or badly fused parts.
+bool unsure(const Tracker& tracker, const TrackPoint& point) {
+    return point.sigma > 2 * noise_of(tracker.scale_at(point.section));
+}
 
 // Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
 std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, const Tracker& tracker,
-                                                     const std::vector<TrackPoint>& places, bool closed) {
+                                                      const std::vector<TrackPoint>& places, bool closed) {
     std::vector<double> support[2];
     for (const TrackPoint& place : places) {
         if (!place.modelled) {
@@ -208,7 +217,8 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
     const double least[2] = {0.1 * quantile(support[0], 0.5), 0.1 * quantile(support[1], 0.5)};
     std::vector<std::optional<TrackPoint>> measured(places.size());
     const auto good = [&](const std::optional<TrackPoint>& point, const TrackPoint& place) {
-        return point && !unsure(tracker, *point) && (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale_at(place.section).noise &&
+        return point && !unsure(tracker, *point) &&
+               (point->section.p - place.section.p).norm() < tracker.step + 3 * tracker.scale_at(place.section).noise &&
                (!place.modelled || (point->support[0] >= least[0] && point->support[1] >= least[1]));
     };
     const auto straight = [&](bool front) {
@@ -227,7 +237,7 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
         }
         measured[i] = near_end(tracker, to_end, along).measure(places[i].section, 3);
         if (!good(measured[i], places[i])) {
-            measured[i] = following.measure(places[i].section, 3);      // a narrow place: what followed it can measure it
+            measured[i] = following.measure(places[i].section, 3);  // a narrow place: what followed it can measure it
         }
         if (!good(measured[i], places[i])) {
             measured[i] = places[i].modelled ? std::optional(places[i]) : std::nullopt;
@@ -243,7 +253,8 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
     std::vector<TrackPoint> way;
     for (std::size_t i = 0; i < measured.size(); ++i) {
         std::vector<double> sigma;
-        for (std::size_t j = i > kNeighbours ? i - kNeighbours : 0; j < std::min(measured.size(), i + kNeighbours + 1); ++j) {
+        for (std::size_t j = i > kNeighbours ? i - kNeighbours : 0; j < std::min(measured.size(), i + kNeighbours + 1);
+             ++j) {
             if (measured[j]) {
                 sigma.push_back(measured[j]->sigma);
             }
@@ -255,11 +266,12 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
     return way;
 }
 
-// A joint has two smooth flanks wider than its own corner, and lies where its points say. Noise, facets and layers of a badly
-// fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they are sure of.
+// A joint has two smooth flanks wider than its own corner, and lies where its points say. Noise, facets and layers of a
+// badly fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they
+// are sure of.
 bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t places) {
     constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6, kMostUnsure = 1;
-    std::vector<double> away, rough, unsure, jump, sigma;      // the first in spacings, the next two in noises
+    std::vector<double> away, rough, unsure, jump, sigma;  // the first in spacings, the next two in noises
     for (std::size_t i = 1; i + 1 < way.size(); ++i) {
         if (!way[i].modelled) {
             // Across the seam only: places may lie closer or further apart along it.
@@ -297,7 +309,8 @@ std::optional<Seam> measure_track(const Tracker& following, const Track& track, 
     seam.closed = track.closed;
     double bend = 0;
     for (const TrackPoint& point : way) {
-        seam.points.push_back({origin + point.section.p, point.section.n1, point.section.n2, point.sigma, point.modelled});
+        seam.points.push_back(
+            {origin + point.section.p, point.section.n1, point.section.n2, point.sigma, point.modelled});
         bend += point.bend;
     }
     // Half a radian between the flanks and nobody doubts that they are two.

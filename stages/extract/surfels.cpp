@@ -11,8 +11,8 @@ namespace seampath::detail {
 namespace {
 
 constexpr std::size_t kLeastNeighbours = 6;
-constexpr double kClear = 0.15;     // share of deciding rays that leaves no doubt; strays over a table decide fewer
-constexpr double kTouch = 1.8;      // cells; means of cells that share a corner are mostly nearer
+constexpr double kClear = 0.15;  // share of deciding rays that leaves no doubt; strays over a table decide fewer
+constexpr double kTouch = 1.8;   // cells; means of cells that share a corner are mostly nearer
 
 void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
     if (surfel.neighbours.size() < kLeastNeighbours) {
@@ -36,7 +36,7 @@ void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
 
 // What hangs together with the surfel inside the ball: the other face of a thin wall does not, though it is as near.
 void collect_neighbours(Surfels& surfels, std::uint32_t i) {
-    thread_local std::vector<char> seen;      // all zero between calls
+    thread_local std::vector<char> seen;  // all zero between calls
     seen.resize(std::max(seen.size(), surfels.at.size()), 0);
     Surfel& s = surfels.at[i];
     s.neighbours = {i};
@@ -133,7 +133,8 @@ void orient_to_file_normals(Surfels& surfels, const PointGrid& grid, const Scan&
     }
 }
 
-// Consistent signs along the spanning tree that crosses the least bent places first; says which piece each surfel is of.
+// Consistent signs along the spanning tree that crosses the least bent places first; says which piece each surfel is
+// of.
 void make_consistent(Surfels& surfels) {
     std::vector<Surfel>& at = surfels.at;
     std::vector<Edge> edges;
@@ -161,14 +162,16 @@ void make_consistent(Surfels& surfels) {
     }
 }
 
-// Per piece: how many more of its normals are free than of their opposites. One ray in fifty must decide. Returns the share
-// of deciding rays in the largest piece.
+// Per piece: how many more of its normals are free than of their opposites. One ray in fifty must decide. Returns the
+// share of deciding rays in the largest piece.
 double turn_outwards(Surfels& surfels, const PointGrid& grid) {
     std::vector<Surfel>& at = surfels.at;
-    const Eigen::Vector3d low = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
-    const Eigen::Vector3d high = std::accumulate(at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
+    const Eigen::Vector3d low = std::accumulate(
+        at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
+    const Eigen::Vector3d high = std::accumulate(
+        at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
     const double reach = std::min((high - low).norm(), 400 * grid.cell());
-    const double start = 2 * grid.cell();      // past the surfel's own surface, not past a thin wall's other face
+    const double start = 2 * grid.cell();  // past the surfel's own surface, not past a thin wall's other face
     const std::size_t stride = std::max<std::size_t>(1, at.size() / 4000);
     std::vector<int> vote(at.size(), 0);
     parallel_for((at.size() + stride - 1) / stride, 32, [&](std::size_t k) {
@@ -190,14 +193,17 @@ double turn_outwards(Surfels& surfels, const PointGrid& grid) {
         }
     }
     const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
-    return std::abs(votes[static_cast<std::size_t>(largest)]) * static_cast<double>(stride) / size[static_cast<std::size_t>(largest)];
+    return std::abs(votes[static_cast<std::size_t>(largest)]) * static_cast<double>(stride) /
+           size[static_cast<std::size_t>(largest)];
 }
 
 // The plane that holds most surfels: the plate that the part is, or the table that it lies on.
 struct MainPlane {
     Eigen::Vector3d n{0, 0, 0};
     double d = 0, share = 0;
-    bool holds(const Surfel& s, double reach) const { return std::abs(n.dot(s.p) - d) < reach && std::abs(n.dot(s.n)) > 0.9; }
+    bool holds(const Surfel& s, double reach) const {
+        return std::abs(n.dot(s.p) - d) < reach && std::abs(n.dot(s.n)) > 0.9;
+    }
 };
 
 MainPlane main_plane(const Surfels& surfels, double reach) {
@@ -212,11 +218,12 @@ MainPlane main_plane(const Surfels& surfels, double reach) {
         plane.share /= static_cast<double>(surfels.at.size());
         planes[k] = plane;
     });
-    return *std::max_element(planes.begin(), planes.end(), [](const MainPlane& a, const MainPlane& b) { return a.share < b.share; });
+    return *std::max_element(planes.begin(), planes.end(),
+                             [](const MainPlane& a, const MainPlane& b) { return a.share < b.share; });
 }
 
-// Where one plane is much of the scan and nearly all else lies on one side of it, that side is the air: parts stand on plates
-// and tables, and nothing is seen through them. Pieces without a share in the plane keep their turn.
+// Where one plane is much of the scan and nearly all else lies on one side of it, that side is the air: parts stand on
+// plates and tables, and nothing is seen through them. Pieces without a share in the plane keep their turn.
 bool turn_to_side_of_main_plane(Surfels& surfels, const PointGrid& grid) {
     const double cell = grid.cell();
     constexpr double kMain = 0.25, kOneSide = 0.85;
@@ -306,7 +313,8 @@ void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
     } else if (2 * static_cast<std::size_t>(open) < surfels.at.size()) {
         surfels.orientation_reason = "air side is the one to which the surfaces are open";
     } else {
-        surfels.orientation_reason = "the scan is open to both sides; the air is taken to be where the joints are concave";
+        surfels.orientation_reason =
+            "the scan is open to both sides; the air is taken to be where the joints are concave";
     }
 }
 

@@ -13,29 +13,29 @@ namespace seampath::detail {
 
 /// The scan, thinned to one element a cell: what coarse work looks at.
 struct Surfel {
-    Eigen::Vector3d p;                        ///< mean of the cell's points, relative to the scan's origin, mm
-    Eigen::Vector3d n{0, 0, 0};               ///< unit, out of the material; zero where too few neighbours
-    std::uint32_t piece = 0;                  ///< of the scan that hangs together, by its first surfel
-    bool decided = true;                      ///< something told which side of its piece is the air
-    double flatness = 0;                      ///< rms distance of the neighbours from their plane, mm
-    std::vector<std::uint32_t> next;          ///< surfels that touch it, ascending
-    std::vector<std::uint32_t> neighbours;    ///< surfels within the radius that hang together with it; itself first
+    Eigen::Vector3d p;                      ///< mean of the cell's points, relative to the scan's origin, mm
+    Eigen::Vector3d n{0, 0, 0};             ///< unit, out of the material; zero where too few neighbours
+    std::uint32_t piece = 0;                ///< of the scan that hangs together, by its first surfel
+    bool decided = true;                    ///< something told which side of its piece is the air
+    double flatness = 0;                    ///< rms distance of the neighbours from their plane, mm
+    std::vector<std::uint32_t> next;        ///< surfels that touch it, ascending
+    std::vector<std::uint32_t> neighbours;  ///< surfels within the radius that hang together with it; itself first
 };
 
 struct Surfels {
-    double radius = 0;                        ///< of the neighbourhoods, mm
+    double radius = 0;  ///< of the neighbourhoods, mm
     std::vector<Surfel> at;
-    std::string orientation_reason;           ///< one sentence: how the side of the air was found
+    std::string orientation_reason;  ///< one sentence: how the side of the air was found
 };
 
 /// Surfels of a grid with plane normals over `radius`, not yet told which side is the air.
 Surfels make_surfels(const PointGrid& grid, double radius);
 
 /// Turns all normals to the side of the air: by the sensor's place or the file's normals if there are any; otherwise
-/// normals are made consistent over each connected piece (minimum spanning tree, Hoppe et al. 1992) and each piece is turned
-/// so that fewer of its normals run into other parts of the scan: what a scanner saw is open to the outside, and the inside
-/// of a box, web or pipe is not. Where few rays decide, a plane that is much of the scan with all else on one side of it does. A
-/// piece of which nothing told is left as it is and marked as not decided.
+/// normals are made consistent over each connected piece (minimum spanning tree, Hoppe et al. 1992) and each piece is
+/// turned so that fewer of its normals run into other parts of the scan: what a scanner saw is open to the outside, and
+/// the inside of a box, web or pipe is not. Where few rays decide, a plane that is much of the scan with all else on
+/// one side of it does. A piece of which nothing told is left as it is and marked as not decided.
 void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan);
 
 }  // namespace seampath::detail

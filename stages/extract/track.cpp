@@ -11,12 +11,14 @@ namespace seampath::detail {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kLeastBend = 5 * kDegree;         // flatter than this two flanks are one surface to a welder
-constexpr double kMostTurn = 35 * kDegree;         // of a flank normal against its prediction, per step
-constexpr double kLeastSupport = 0.1;              // of the density that the flank had so far: four views may become one
+constexpr double kLeastBend = 5 * kDegree;  // flatter than this two flanks are one surface to a welder
+constexpr double kMostTurn = 35 * kDegree;  // of a flank normal against its prediction, per step
+constexpr double kLeastSupport = 0.1;       // of the density that the flank had so far: four views may become one
 constexpr std::size_t kMostSteps = 200000;
 
-bool similar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle) { return a.dot(b) > std::cos(angle); }
+bool similar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle) {
+    return a.dot(b) > std::cos(angle);
+}
 
 bool supported(const std::vector<TrackPoint>& way, const TrackPoint& point) {
     for (int k = 0; k < 2; ++k) {
@@ -52,15 +54,16 @@ bool met(const std::vector<Track>& taken, const Section& place, double reach) {
 
 enum class End { open, closed };
 
-// Extends `way` in one direction (+1: along n1 x n2) as far as the joint is measured. Coming back to its own course it is
-// closed; what then lies before the place where it came back is a piece travelled twice.
+// Extends `way` in one direction (+1: along n1 x n2) as far as the joint is measured. Coming back to its own course it
+// is closed; what then lies before the place where it came back is a piece travelled twice.
 End advance(const Tracker& tracker, std::vector<TrackPoint>& way, double direction, const std::vector<Track>& taken) {
-    constexpr std::size_t kBehind = 10;      // the latest points are near in any case
+    constexpr std::size_t kBehind = 10;  // the latest points are near in any case
     while (way.size() < kMostSteps) {
         const double step = std::min(tracker.step, std::max(0.25 * tracker.step, 0.7 * way.back().along));
         const Section predicted = carry_on(way, direction, step);
         const auto point = tracker.measure(predicted, 2);
-        if (!point || !believable(tracker, predicted, *point) || !supported(way, *point) || met(taken, point->section, 0.7 * step)) {
+        if (!point || !believable(tracker, predicted, *point) || !supported(way, *point) ||
+            met(taken, point->section, 0.7 * step)) {
             return End::open;
         }
         for (std::size_t i = 0; i + kBehind < way.size(); ++i) {
@@ -88,7 +91,8 @@ std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) con
     point.bend = fit->bend;
     point.along = std::min(fit->flank[0].window.along, fit->flank[1].window.along);
     point.away = std::min(fit->flank[0].window.away, fit->flank[1].window.away);
-    point.rough = std::max(fit->flank[0].fit.scale() / fit->flank[0].noise, fit->flank[1].fit.scale() / fit->flank[1].noise);
+    point.rough =
+        std::max(fit->flank[0].fit.scale() / fit->flank[0].noise, fit->flank[1].fit.scale() / fit->flank[1].noise);
     point.support[0] = fit->flank[0].slab_points;
     point.support[1] = fit->flank[1].slab_points;
     return point;
@@ -112,7 +116,8 @@ Section carry_on(const std::vector<TrackPoint>& way, double direction, double st
 }
 
 bool lies_on(const Track& track, const Section& place, double reach) {
-    return std::any_of(track.points.begin(), track.points.end(), [&](const TrackPoint& q) { return same_place(q, place, reach); });
+    return std::any_of(track.points.begin(), track.points.end(),
+                       [&](const TrackPoint& q) { return same_place(q, place, reach); });
 }
 
 std::optional<Track> follow(const Tracker& tracker, const Crease& seed, const std::vector<Track>& taken) {

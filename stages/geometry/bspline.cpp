@@ -10,10 +10,13 @@ namespace seampath {
 namespace {
 
 // Eight-point Gauss-Legendre on [-1, 1] (Abramowitz & Stegun, table 25.4).
-constexpr std::array<double, 4> kGaussNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-constexpr std::array<double, 4> kGaussWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+constexpr std::array<double, 4> kGaussNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                           0.9602898564975363};
+constexpr std::array<double, 4> kGaussWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                             0.1012285362903763};
 
-// Pieces of the arc-length table per knot span: |c'| is no polynomial, short pieces keep the quadrature at rounding level.
+// Pieces of the arc-length table per knot span: |c'| is no polynomial, short pieces keep the quadrature at rounding
+// level.
 constexpr int kPiecesPerSpan = 4;
 
 double wrap(double u, double first, double period) {
@@ -97,7 +100,8 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
             N[d][k] = sum;
         }
     }
-    // Derivative of a basis function of degree d: d (N_{i}/(t_{i+d}-t_i) - N_{i+1}/(t_{i+d+1}-t_{i+1})) of degree d - 1.
+    // Derivative of a basis function of degree d: d (N_{i}/(t_{i+d}-t_i) - N_{i+1}/(t_{i+d+1}-t_{i+1})) of degree d
+    // - 1.
     const auto differentiate = [&t](int d, int k, const auto& lower, int lower_size) {
         const int i = 3 - d + k;
         double sum = 0;
@@ -121,7 +125,9 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
     return basis;
 }
 
-double first_parameter(const CubicBSpline& curve) { return curve.periodic ? curve.knots.front() : curve.knots[3]; }
+double first_parameter(const CubicBSpline& curve) {
+    return curve.periodic ? curve.knots.front() : curve.knots[3];
+}
 double last_parameter(const CubicBSpline& curve) {
     return curve.periodic ? curve.knots.back() : curve.knots[curve.control.size()];
 }
@@ -138,7 +144,9 @@ Eigen::Vector3d second_derivative(const CubicBSpline& curve, double u) {
     const CubicBasis basis = basis_at(curve, u);
     return combine(curve, basis, basis.d2);
 }
-Eigen::Vector3d tangent(const CubicBSpline& curve, double u) { return derivative(curve, u).normalized(); }
+Eigen::Vector3d tangent(const CubicBSpline& curve, double u) {
+    return derivative(curve, u).normalized();
+}
 double curvature(const CubicBSpline& curve, double u) {
     const Eigen::Vector3d d1 = derivative(curve, u);
     return d1.cross(second_derivative(curve, u)).norm() / std::pow(d1.norm(), 3);
@@ -166,14 +174,16 @@ ArcLength::ArcLength(CubicBSpline curve) : curve_(std::move(curve)) {
 
 double ArcLength::station(double u) const {
     const auto above = std::upper_bound(knot_.begin(), knot_.end(), u) - knot_.begin();
-    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(knot_.size()) - 2));
+    const auto i = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(knot_.size()) - 2));
     return station_[i] + speed_integral(curve_, knot_[i], std::clamp(u, knot_.front(), knot_.back()));
 }
 
 double ArcLength::parameter(double station) const {
     station = curve_.periodic ? wrap(station, 0, length()) : std::clamp(station, 0.0, length());
     const auto above = std::upper_bound(station_.begin(), station_.end(), station) - station_.begin();
-    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(knot_.size()) - 2));
+    const auto i = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(knot_.size()) - 2));
     const double ds = station_[i + 1] - station_[i];
     double u = ds > 0 ? knot_[i] + (knot_[i + 1] - knot_[i]) * (station - station_[i]) / ds : knot_[i];
     for (int iteration = 0; iteration < 8; ++iteration) {

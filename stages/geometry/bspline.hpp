@@ -31,26 +31,27 @@ double last_parameter(const CubicBSpline& curve);
 Eigen::Vector3d position(const CubicBSpline& curve, double u);
 Eigen::Vector3d derivative(const CubicBSpline& curve, double u);
 Eigen::Vector3d second_derivative(const CubicBSpline& curve, double u);
-Eigen::Vector3d tangent(const CubicBSpline& curve, double u);      ///< unit
-double curvature(const CubicBSpline& curve, double u);             ///< 1/mm
+Eigen::Vector3d tangent(const CubicBSpline& curve, double u);  ///< unit
+double curvature(const CubicBSpline& curve, double u);         ///< 1/mm
 
-/// Arc length of a curve as a table over its knots, filled by eight-point Gauss-Legendre quadrature of |c'| and inverted by
-/// Newton's method: parameter(station(u)) = u to about 1e-12 mm. Keeps a copy of the curve.
+/// Arc length of a curve as a table over its knots, filled by eight-point Gauss-Legendre quadrature of |c'| and
+/// inverted by Newton's method: parameter(station(u)) = u to about 1e-12 mm. Keeps a copy of the curve.
 class ArcLength {
 public:
     explicit ArcLength(CubicBSpline curve);
     double length() const { return station_.back(); }
-    double station(double u) const;             ///< mm from the first point; u within the domain
-    double parameter(double station) const;     ///< closed curves wrap, open curves clamp
+    double station(double u) const;          ///< mm from the first point; u within the domain
+    double parameter(double station) const;  ///< closed curves wrap, open curves clamp
     const CubicBSpline& curve() const { return curve_; }
 
 private:
     CubicBSpline curve_;
-    std::vector<double> knot_;       ///< ends of the quadrature pieces
-    std::vector<double> station_;    ///< mm at those ends
+    std::vector<double> knot_;     ///< ends of the quadrature pieces
+    std::vector<double> station_;  ///< mm at those ends
 };
 
-/// Parameter of the point of the curve nearest to p: the best of a coarse sampling, then Newton's method on (c - p).c' = 0.
+/// Parameter of the point of the curve nearest to p: the best of a coarse sampling, then Newton's method on (c - p).c'
+/// = 0.
 double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p);
 
 /// The same from a start that is already near (within a knot span or so).

@@ -9,16 +9,17 @@ namespace {
 
 constexpr double kShrink = 0.7;
 constexpr double kGrow = 1.5;
-constexpr double kContinuation = 0.15;        // slope by which a surface may leave the continuation of its inner part
-constexpr double kMostTaken = 0.85;           // share of a window's points that a fit must explain to be taken at once
-constexpr double kRough = 1.6;                // residual scale, in noises, beyond which no one surface is what was fitted
-constexpr double kPointsAcross = 12;          // of the smallest window, in point distances
-constexpr double kNoiseWidths = 15;           // of the smallest window, in noises: its slope is then known to a few degrees
+constexpr double kContinuation = 0.15;  // slope by which a surface may leave the continuation of its inner part
+constexpr double kMostTaken = 0.85;     // share of a window's points that a fit must explain to be taken at once
+constexpr double kRough = 1.6;          // residual scale, in noises, beyond which no one surface is what was fitted
+constexpr double kPointsAcross = 12;    // of the smallest window, in point distances
+constexpr double kNoiseWidths = 15;     // of the smallest window, in noises: its slope is then known to a few degrees
 constexpr double kBandWidths = 4;
-constexpr double kLeastNoise = 0.02;          // what counts as noise where a scan has none, in point distances
+constexpr double kLeastNoise = 0.02;  // what counts as noise where a scan has none, in point distances
 constexpr int kBins = 5;
 constexpr std::size_t kLeastPoints = 24;
-constexpr std::size_t kEnoughPoints = 24000;      // a flank's: more add time and, their noise being shared, nothing to the fit
+constexpr std::size_t kEnoughPoints =
+    24000;  // a flank's: more add time and, their noise being shared, nothing to the fit
 
 // Largest mean residual over bins across one variable, in units of what noise allows.
 double misfit(const QuadraticFit& fit, double low, double high, bool over_u, double noise, double correlation) {
@@ -45,9 +46,10 @@ SectionWindow smallest_window(const ScanScale& scale) {
     return {0.7 * away, away, std::max(kBandWidths * scale.spacing, kBandWidths * scale.noise)};
 }
 
-// Fits the samples of one window. `inner`, when given, is the fit of a smaller window: what lies off its continuation is left
-// out.
-std::optional<QuadraticFit> fit_window(const FlankPoints& samples, const SectionWindow& w, double noise, const Flank* inner) {
+// Fits the samples of one window. `inner`, when given, is the fit of a smaller window: what lies off its continuation
+// is left out.
+std::optional<QuadraticFit> fit_window(const FlankPoints& samples, const SectionWindow& w, double noise,
+                                       const Flank* inner) {
     QuadraticFit fit;
     fit.begin(samples.points.size(), w.away, w.along);
     for (const FlankPoint& x : samples.points) {
@@ -66,17 +68,19 @@ std::optional<QuadraticFit> fit_window(const FlankPoints& samples, const Section
 }
 
 struct Quality {
-    double across = 0, along = 0;      // worst misfit over bins, 1 is what noise allows
+    double across = 0, along = 0;  // worst misfit over bins, 1 is what noise allows
     bool rough = false;
     bool good() const { return across <= 1 && along <= 1 && !rough; }
 };
 
 Quality quality_of(const QuadraticFit& fit, const SectionWindow& w, double noise, double correlation) {
-    return {misfit(fit, w.band / w.away, 1, true, noise, correlation), misfit(fit, -1, 1, false, noise, correlation), fit.scale() > kRough * noise};
+    return {misfit(fit, w.band / w.away, 1, true, noise, correlation), misfit(fit, -1, 1, false, noise, correlation),
+            fit.scale() > kRough * noise};
 }
 
 // Smallest window that carries a fit; the surface may be too bent even for the one it begins with.
-std::optional<Flank> begin_flank(const FlankPoints& samples, const ScanScale& scale, double noise, const SectionWindow& limit) {
+std::optional<Flank> begin_flank(const FlankPoints& samples, const ScanScale& scale, double noise,
+                                 const SectionWindow& limit) {
     Flank flank;
     flank.noise = noise;
     const SectionWindow start = smallest_window(scale);
@@ -99,7 +103,9 @@ std::optional<Flank> begin_flank(const FlankPoints& samples, const ScanScale& sc
         }
         SectionWindow w = flank.window;
         (q.along > q.across ? w.along : w.away) *= kShrink;
-        fit = w.away > w.band + 3 * scale.spacing && w.along > 2 * scale.spacing ? fit_window(samples, w, noise, nullptr) : std::nullopt;
+        fit = w.away > w.band + 3 * scale.spacing && w.along > 2 * scale.spacing
+                  ? fit_window(samples, w, noise, nullptr)
+                  : std::nullopt;
         if (!fit) {
             break;
         }
@@ -109,28 +115,32 @@ std::optional<Flank> begin_flank(const FlankPoints& samples, const ScanScale& sc
     return flank;
 }
 
-// How far a surface of curvature k is known by its curvature alone: the term of a circle after the one that the fit takes
-// off, k^5 x^6 / 16, is to stay below a third of the noise.
+// How far a surface of curvature k is known by its curvature alone: the term of a circle after the one that the fit
+// takes off, k^5 x^6 / 16, is to stay below a third of the noise.
 double curvature_reach(double k, double noise) {
     return k > 0 ? std::pow(16 * 0.3 * noise / std::pow(k, 5), 1.0 / 6) : std::numeric_limits<double>::infinity();
 }
 
-// The limit cut down to where the flank's curvature, as far as the fit is sure of it, lets the fit be carried on. Twist bends
-// both ways: a row of the curvature matrix bounds the bend in its direction.
+// The limit cut down to where the flank's curvature, as far as the fit is sure of it, lets the fit be carried on. Twist
+// bends both ways: a row of the curvature matrix bounds the bend in its direction.
 SectionWindow within_reach(const Flank& flank, const SectionWindow& limit, double noise, double correlation) {
     const QuadraticFit::Normal cofactors = flank.fit.cofactors();
     const double unit = flank.fit.scale() * std::sqrt(correlation);
     const SectionWindow& w = flank.window;
-    const auto sure = [&](int i) { return std::max(0.0, std::abs(flank.fit.coefficients()[i]) - 2 * unit * std::sqrt(cofactors(i, i))); };
-    const double across = 2 * sure(3) / (w.away * w.away), twist = sure(4) / (w.away * w.along), along = 2 * sure(5) / (w.along * w.along);
-    return {std::min(limit.along, curvature_reach(along + twist, noise)), std::min(limit.away, curvature_reach(across + twist, noise)), limit.band};
+    const auto sure = [&](int i) {
+        return std::max(0.0, std::abs(flank.fit.coefficients()[i]) - 2 * unit * std::sqrt(cofactors(i, i)));
+    };
+    const double across = 2 * sure(3) / (w.away * w.away), twist = sure(4) / (w.away * w.along),
+                 along = 2 * sure(5) / (w.along * w.along);
+    return {std::min(limit.along, curvature_reach(along + twist, noise)),
+            std::min(limit.away, curvature_reach(across + twist, noise)), limit.band};
 }
 
-// Noise of this very surface, which may be seen at more of a slant than the place as a whole: scatter of the points about the
-// means of small bins, so that a bend does not pass for noise.
+// Noise of this very surface, which may be seen at more of a slant than the place as a whole: scatter of the points
+// about the means of small bins, so that a bend does not pass for noise.
 double flank_noise(const FlankPoints& samples, const ScanScale& scale, const SectionWindow& limit) {
     constexpr std::size_t kAcross = 4;
-    constexpr double kMost = 2.5;      // of the place's noise; what is rougher is another surface, or none
+    constexpr double kMost = 2.5;  // of the place's noise; what is rougher is another surface, or none
     const double least = noise_of(scale);
     const SectionWindow start = smallest_window(scale);
     const SectionWindow w{std::min(limit.along, start.along), std::min(limit.away, start.away), limit.band};
@@ -141,7 +151,9 @@ double flank_noise(const FlankPoints& samples, const ScanScale& scale, const Sec
     std::array<double, kAcross * kAcross> sum{}, count{};
     const auto bin = [&](std::size_t i) {
         const double u = (fit->u(i) * w.away - w.band) / (w.away - w.band), s = (fit->s(i) + 1) / 2;
-        const auto step = [](double x) { return std::min(kAcross - 1, static_cast<std::size_t>(std::max(0.0, x) * kAcross)); };
+        const auto step = [](double x) {
+            return std::min(kAcross - 1, static_cast<std::size_t>(std::max(0.0, x) * kAcross));
+        };
         return step(u) * kAcross + step(s);
     };
     for (std::size_t i = 0; i < fit->size(); ++i) {
@@ -160,8 +172,8 @@ double flank_noise(const FlankPoints& samples, const ScanScale& scale, const Sec
     return std::clamp(1.4826 * quantile(scatter, 0.5), least, kMost * least);
 }
 
-// Whether what a wider window holds beyond the flank's own is the same surface going on, and not strays or what lies behind
-// its edge: a share of the flank's density at least.
+// Whether what a wider window holds beyond the flank's own is the same surface going on, and not strays or what lies
+// behind its edge: a share of the flank's density at least.
 bool goes_on(const Flank& flank, const QuadraticFit& fit, const SectionWindow& w) {
     constexpr double kLeastDensity = 0.3;
     const auto area = [](const SectionWindow& x) { return 2 * x.along * (x.away - x.band); };
@@ -170,7 +182,8 @@ bool goes_on(const Flank& flank, const QuadraticFit& fit, const SectionWindow& w
 }
 
 // Takes the whole of the limit, as far as the flank's curvature is known, when one surface explains it.
-bool take_whole(Flank& flank, const FlankPoints& samples, const ScanScale& scale, const SectionWindow& limit, bool continued) {
+bool take_whole(Flank& flank, const FlankPoints& samples, const ScanScale& scale, const SectionWindow& limit,
+                bool continued) {
     auto fit = fit_window(samples, limit, flank.noise, continued ? &flank : nullptr);
     if (!fit || fit->share_taken() < kMostTaken || !quality_of(*fit, limit, flank.noise, scale.correlation).good() ||
         (continued && !goes_on(flank, *fit, limit))) {
@@ -182,8 +195,8 @@ bool take_whole(Flank& flank, const FlankPoints& samples, const ScanScale& scale
     return true;
 }
 
-// The window grows, across and along in turn, as long as one surface explains what it holds: where it ends, the surface ends
-// or turns.
+// The window grows, across and along in turn, as long as one surface explains what it holds: where it ends, the surface
+// ends or turns.
 void grow(Flank& flank, const FlankPoints& samples, const ScanScale& scale, const SectionWindow& limit) {
     const double noise = flank.noise;
     bool across = true, along = true;
@@ -195,7 +208,8 @@ void grow(Flank& flank, const FlankPoints& samples, const ScanScale& scale, cons
                 continue;
             }
             SectionWindow w = flank.window;
-            w.*extent = std::min({limit.*extent, w.*extent * kGrow, within_reach(flank, limit, noise, scale.correlation).*extent});
+            w.*extent = std::min(
+                {limit.*extent, w.*extent * kGrow, within_reach(flank, limit, noise, scale.correlation).*extent});
             if (w.*extent < 1.1 * flank.window.*extent) {
                 open = false;
                 continue;
@@ -212,8 +226,8 @@ void grow(Flank& flank, const FlankPoints& samples, const ScanScale& scale, cons
     }
 }
 
-// Variance of the means of blocks of residuals over that of as many independent ones. Blocks are much wider than noise is
-// correlated; what they share is also whatever bends the surface by less than the tests of its shape see.
+// Variance of the means of blocks of residuals over that of as many independent ones. Blocks are much wider than noise
+// is correlated; what they share is also whatever bends the surface by less than the tests of its shape see.
 double shared_variance(const QuadraticFit& fit) {
     constexpr std::size_t kAcross = 6, kAlong = 8;
     std::array<double, kAcross * kAlong> sum{};
@@ -235,21 +249,23 @@ double shared_variance(const QuadraticFit& fit) {
     return blocks > 12 && squares > 0 ? shared / squares * blocks / (blocks - 6) : 1;
 }
 
-// 1-sigma of one point as far as means over many go. Thinned by lot, noise that neighbours shared is less of a share of what
-// is left.
+// 1-sigma of one point as far as means over many go. Thinned by lot, noise that neighbours shared is less of a share of
+// what is left.
 double unit_of_means(const Flank& flank, const ScanScale& scale) {
-    return flank.fit.scale() * std::sqrt(std::max(1 + flank.share * (scale.correlation - 1), shared_variance(flank.fit)));
+    return flank.fit.scale() *
+           std::sqrt(std::max(1 + flank.share * (scale.correlation - 1), shared_variance(flank.fit)));
 }
 
-// Where points at these distances from the seam, or from the section, end: infinity when they go on to the last one possible.
+// Where points at these distances from the seam, or from the section, end: infinity when they go on to the last one
+// possible.
 double end_of(const std::vector<double>& distance, double from, double to, double spacing) {
-    constexpr double kLeastShare = 0.25;      // of the usual density; two bins without it are no hole
+    constexpr double kLeastShare = 0.25;  // of the usual density; two bins without it are no hole
     const double bin = 3 * spacing;
     std::vector<double> count(static_cast<std::size_t>(std::max(0.0, (to - from) / bin)) + 1, 0), nearer;
     for (const double x : distance) {
         count[std::min(count.size() - 1, static_cast<std::size_t>(std::max(0.0, (x - from) / bin)))] += 1;
     }
-    for (std::size_t i = 1; i + 2 < count.size(); ++i) {      // the last bin is a part of one
+    for (std::size_t i = 1; i + 2 < count.size(); ++i) {  // the last bin is a part of one
         nearer.assign(count.begin(), count.begin() + static_cast<std::ptrdiff_t>(i));
         const double enough = kLeastShare * quantile(nearer, 0.5);
         if (count[i] < enough && count[i + 1] < enough) {
@@ -259,8 +275,8 @@ double end_of(const std::vector<double>& distance, double from, double to, doubl
     return std::numeric_limits<double>::infinity();
 }
 
-// How far from the seam a flank may be used where it ends within the window. What lies at its edge is a face that turns away,
-// seen from beside: it would bend the fit. Edges have radii as corners have: a band is left out there too.
+// How far from the seam a flank may be used where it ends within the window. What lies at its edge is a face that turns
+// away, seen from beside: it would bend the fit. Edges have radii as corners have: a band is left out there too.
 double edge_across(const FlankPoints& samples, const ScanScale& scale, const SectionWindow& w) {
     std::vector<double> u;
     for (const FlankPoint& x : samples.points) {
@@ -302,14 +318,17 @@ SectionWindow measuring_window(const ScanScale& scale) {
 }
 
 void thin_out(FlankPoints& samples) {
-    samples.share = std::min(1.0, static_cast<double>(kEnoughPoints) / static_cast<double>(std::max<std::size_t>(1, samples.points.size())));
+    samples.share = std::min(
+        1.0, static_cast<double>(kEnoughPoints) / static_cast<double>(std::max<std::size_t>(1, samples.points.size())));
     if (samples.share < 1) {
         const auto limit = static_cast<std::uint32_t>(samples.share * 4294967295.0);
         std::erase_if(samples.points, [limit](const FlankPoint& x) { return x.lot > limit; });
     }
 }
 
-double noise_of(const ScanScale& scale) { return std::max(scale.noise, kLeastNoise * scale.spacing); }
+double noise_of(const ScanScale& scale) {
+    return std::max(scale.noise, kLeastNoise * scale.spacing);
+}
 
 double residual(const Flank& flank, double u, double s, double z) {
     return flank.fit.residual(u / flank.window.away, s / flank.window.along, z);
@@ -319,7 +338,9 @@ double continuation_doubt(const Flank& flank, double u, double s) {
     return kContinuation * std::max({0.0, u - flank.window.away, std::abs(s) - flank.window.along});
 }
 
-double gate(const Flank& flank, double u, double s) { return 4 * flank.noise + continuation_doubt(flank, u, s); }
+double gate(const Flank& flank, double u, double s) {
+    return 4 * flank.noise + continuation_doubt(flank, u, s);
+}
 
 std::optional<Flank> fit_flank(const FlankPoints& samples, const ScanScale& scale, SectionWindow limit) {
     Flank flank;

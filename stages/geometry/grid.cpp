@@ -36,7 +36,8 @@ constexpr double kMaxCellsPerAxis = 1 << 20;
 
 }  // namespace
 
-PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, double cell, std::span<const std::uint8_t> keep) : cell_(cell) {
+PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, double cell, std::span<const std::uint8_t> keep)
+    : cell_(cell) {
     ensure(cell > 0 && std::isfinite(cell), "a grid needs cells of positive size");
     ensure(keep.empty() || keep.size() == points.size(), "one flag per point");
     const auto taken = [&](std::size_t i) { return keep.empty() || keep[i] != 0; };
@@ -62,9 +63,11 @@ PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, double cell, std::
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (taken(i)) {
             const Eigen::Vector3d at = ((points[i].cast<double>() - low_) / cell_).array().floor();
-            const auto x = static_cast<std::int64_t>(at.x()), y = static_cast<std::int64_t>(at.y()), z = static_cast<std::int64_t>(at.z());
-            entries.push_back({key(std::min(x, count_.x() - 1), std::min(y, count_.y() - 1), std::min(z, count_.z() - 1)),
-                               static_cast<std::uint32_t>(i)});
+            const auto x = static_cast<std::int64_t>(at.x()), y = static_cast<std::int64_t>(at.y()),
+                       z = static_cast<std::int64_t>(at.z());
+            entries.push_back(
+                {key(std::min(x, count_.x() - 1), std::min(y, count_.y() - 1), std::min(z, count_.z() - 1)),
+                 static_cast<std::uint32_t>(i)});
         }
     }
     sort_by_key(entries, key(count_.x() - 1, count_.y() - 1, count_.z() - 1));

@@ -11,9 +11,9 @@
 
 namespace seampath {
 
-/// Points sorted into cubic cells. One structure serves coarse work (a cell's mean stands for its points) and exact work
-/// (all raw points of a box). Cells are in ascending order of their integer coordinates, z before y before x, whatever the
-/// order in which the points came.
+/// Points sorted into cubic cells. One structure serves coarse work (a cell's mean stands for its points) and exact
+/// work (all raw points of a box). Cells are in ascending order of their integer coordinates, z before y before x,
+/// whatever the order in which the points came.
 class PointGrid {
 public:
     /// `keep`, when not empty, says which points take part. Needs finite points; cell > 0, mm.
@@ -77,8 +77,8 @@ private:
     Eigen::Matrix<std::int64_t, 3, 1> count_;
     std::vector<Eigen::Vector3f> sorted_;
     std::vector<std::uint32_t> source_;
-    std::vector<std::uint64_t> key_;      ///< of each occupied cell, ascending
-    std::vector<std::size_t> start_;      ///< first point of each cell, and the end
+    std::vector<std::uint64_t> key_;  ///< of each occupied cell, ascending
+    std::vector<std::size_t> start_;  ///< first point of each cell, and the end
 };
 
 }  // namespace seampath

@@ -7,8 +7,8 @@
 
 namespace seampath {
 
-/// A number drawn for a point from its own coordinates: the same in whatever order the points come. Samples of a given share
-/// are the points whose lot lies below that share of 2^32.
+/// A number drawn for a point from its own coordinates: the same in whatever order the points come. Samples of a given
+/// share are the points whose lot lies below that share of 2^32.
 inline std::uint32_t lot_of(const Eigen::Vector3f& p) {
     std::uint32_t h = 0;
     for (int axis = 0; axis < 3; ++axis) {

@@ -13,7 +13,8 @@ namespace seampath {
 /// places that belong to i. The first exception is rethrown.
 template <class F>
 void parallel_for(std::size_t n, std::size_t block, F&& f) {
-    const std::size_t threads = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), (n + block - 1) / block);
+    const std::size_t threads =
+        std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), (n + block - 1) / block);
     std::atomic<std::size_t> next{0};
     std::exception_ptr failure;
     std::mutex failure_guard;

@@ -47,11 +47,12 @@ bool QuadraticFit::least_squares() {
 }
 
 void QuadraticFit::take_curvature() {
-    constexpr double kMostRise = 0.5;      // of a radius over the tangent plane: beyond, a surface is no graph over it
+    constexpr double kMostRise = 0.5;  // of a radius over the tangent plane: beyond, a surface is no graph over it
     if (u_length_ <= 0) {
         return;
     }
-    const double uu = 2 * c_[3] / (u_length_ * u_length_), us = c_[4] / (u_length_ * s_length_), ss = 2 * c_[5] / (s_length_ * s_length_);
+    const double uu = 2 * c_[3] / (u_length_ * u_length_), us = c_[4] / (u_length_ * s_length_),
+                 ss = 2 * c_[5] / (s_length_ * s_length_);
     const double mean = (uu + ss) / 2, rise = std::abs(c_[3]) + std::abs(c_[4]) + std::abs(c_[5]);
     const double k = mean + std::copysign(std::hypot((uu - ss) / 2, us), mean);
     const double slope_u = c_[1] / u_length_, slope_s = c_[2] / s_length_;
@@ -84,9 +85,10 @@ bool QuadraticFit::solve(double least_scale) {
             magnitude[i] = std::abs(residual_[i]);
         }
         const double before = scale_;
-        scale_ = std::max(least_scale, kMadToSigma * quantile(magnitude, 0.5) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 6)));
+        scale_ = std::max(least_scale, kMadToSigma * quantile(magnitude, 0.5) *
+                                           std::sqrt(static_cast<double>(n) / static_cast<double>(n - 6)));
         if (scale_ <= 0) {
-            weight_.assign(n, 1);      // exact data: nothing to weigh down
+            weight_.assign(n, 1);  // exact data: nothing to weigh down
             return true;
         }
         for (std::size_t i = 0; i < n; ++i) {
@@ -101,7 +103,8 @@ bool QuadraticFit::solve(double least_scale) {
 }
 
 void QuadraticFit::shrink(double unit) {
-    constexpr double kLeastPrior = 0.25;      // of a coefficient's variance: that one came out small does not prove it nought
+    constexpr double kLeastPrior =
+        0.25;  // of a coefficient's variance: that one came out small does not prove it nought
     const Normal covariance = unit * unit * cofactors();
     const Coefficients right = normal_ * c_;
     for (int i = 3; i < 6; ++i) {

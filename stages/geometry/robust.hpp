@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 namespace seampath {
 
@@ -24,9 +24,10 @@ inline double quantile(std::vector<double>& values, double q) {
 /// biweight (c = 4.685, 95 % efficient for Gaussian noise) and the scale from the median absolute residual.
 /// u and s should be of order 1.
 ///
-/// A cylinder or sphere is no parabola: over its tangent plane, with the quadratic form q and the curvature k (of larger
-/// modulus), its height is h = q + k h^2 / 2 exactly. Given the lengths that u and s stand for, the fit takes k from itself
-/// and the quadratic is fitted to h - k h^2 / 2. At u = s = 0 height, slope and curvature are those of the quadratic.
+/// A cylinder or sphere is no parabola: over its tangent plane, with the quadratic form q and the curvature k (of
+/// larger modulus), its height is h = q + k h^2 / 2 exactly. Given the lengths that u and s stand for, the fit takes k
+/// from itself and the quadratic is fitted to h - k h^2 / 2. At u = s = 0 height, slope and curvature are those of the
+/// quadratic.
 class QuadraticFit {
 public:
     using Coefficients = Eigen::Matrix<double, 6, 1>;
@@ -34,7 +35,8 @@ public:
 
     static Coefficients row(double u, double s) { return (Coefficients() << 1, u, s, u * u, u * s, s * s).finished(); }
 
-    /// `u_length`, `s_length`: what one unit of u and s stands for, in the unit of z; 0: the surface is the quadratic alone.
+    /// `u_length`, `s_length`: what one unit of u and s stands for, in the unit of z; 0: the surface is the quadratic
+    /// alone.
     void begin(std::size_t expected, double u_length = 0, double s_length = 0) {
         u_.clear(), s_.clear(), z_.clear();
         u_.reserve(expected), s_.reserve(expected), z_.reserve(expected);
@@ -46,23 +48,25 @@ public:
     double u(std::size_t i) const { return u_[i]; }
     double s(std::size_t i) const { return s_[i]; }
 
-    /// False when the points do not determine the six coefficients. `least_scale` keeps the scale from collapsing on data
-    /// that are exact or quantised, same unit as z.
+    /// False when the points do not determine the six coefficients. `least_scale` keeps the scale from collapsing on
+    /// data that are exact or quantised, same unit as z.
     bool solve(double least_scale);
 
-    /// Shrinks each second-order coefficient towards 0 as far as its uncertainty, at `unit` (1-sigma of one point for the
-    /// purpose of means, same unit as z), leaves it in doubt: positive-part shrinkage (James & Stein 1961) as a ridge. A flat
-    /// surface is then known nearly as well as if it had been known to be flat. cofactors() then are those of the posterior.
+    /// Shrinks each second-order coefficient towards 0 as far as its uncertainty, at `unit` (1-sigma of one point for
+    /// the purpose of means, same unit as z), leaves it in doubt: positive-part shrinkage (James & Stein 1961) as a
+    /// ridge. A flat surface is then known nearly as well as if it had been known to be flat. cofactors() then are
+    /// those of the posterior.
     void shrink(double unit);
 
     const Coefficients& coefficients() const { return c_; }
-    double scale() const { return scale_; }                                ///< robust 1-sigma of the residuals
-    double weight(std::size_t i) const { return weight_[i]; }              ///< 0..1, 0 for outliers
+    double scale() const { return scale_; }                    ///< robust 1-sigma of the residuals
+    double weight(std::size_t i) const { return weight_[i]; }  ///< 0..1, 0 for outliers
     double residual(std::size_t i) const { return residual_[i]; }
-    double share_taken() const {                                            ///< of the points, with a weight above 0
-        return 1 - static_cast<double>(std::count(weight_.begin(), weight_.end(), 0.0)) / static_cast<double>(weight_.size());
+    double share_taken() const {  ///< of the points, with a weight above 0
+        return 1 - static_cast<double>(std::count(weight_.begin(), weight_.end(), 0.0)) /
+                       static_cast<double>(weight_.size());
     }
-    double value(double u, double s) const { return row(u, s).dot(c_); }   ///< of the quadratic
+    double value(double u, double s) const { return row(u, s).dot(c_); }  ///< of the quadratic
     /// What is left of a point's height when the surface is taken off.
     double residual(double u, double s, double z) const { return straightened(u, s, z) - value(u, s); }
     /// Inverse of the weighted normal matrix: times scale^2 it is the covariance for uncorrelated noise.

@@ -15,17 +15,17 @@
 namespace seampath {
 namespace {
 
-constexpr std::size_t kPlaces = 400;       // the median of so many is stable to a few per cent
+constexpr std::size_t kPlaces = 400;  // the median of so many is stable to a few per cent
 constexpr std::size_t kNeighbours = 16;
 
 struct Bulk {
     Eigen::Vector3d middle{0, 0, 0};
-    double extent = 0;      // mm, of the longest axis, without what lies four standard deviations off
+    double extent = 0;  // mm, of the longest axis, without what lies four standard deviations off
 };
 
 Bulk bulk_of(std::span<const Eigen::Vector3f> points) {
     constexpr int kRounds = 12;
-    constexpr double kClip = 4;      // standard deviations
+    constexpr double kClip = 4;  // standard deviations
     Bulk bulk;
     Eigen::Vector3d low = Eigen::Vector3d::Constant(-std::numeric_limits<double>::max()), high = -low;
     for (int round = 0; round < kRounds; ++round) {
@@ -40,10 +40,11 @@ Bulk bulk_of(std::span<const Eigen::Vector3f> points) {
                 count += 1;
             }
         }
-        const Eigen::Vector3d mean = sum / count, deviation = (squares / count - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
+        const Eigen::Vector3d mean = sum / count,
+                              deviation = (squares / count - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
         bulk.middle += mean;
         const double before = bulk.extent;
-        bulk.extent = std::sqrt(12.0) * deviation.maxCoeff();      // of points spread evenly
+        bulk.extent = std::sqrt(12.0) * deviation.maxCoeff();  // of points spread evenly
         low = bulk.middle - Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
         high = bulk.middle + Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
         if (round > 0 && std::abs(before - bulk.extent) <= 1e-3 * bulk.extent) {
@@ -70,20 +71,22 @@ double neighbour_distance(const PointGrid& grid, const Eigen::Vector3d& p, doubl
 // A quadric over the best-fit plane of a ball.
 struct Patch {
     bool valid = false;
-    double scale = 0;          // robust 1-sigma of the residuals
-    double correlation = 0;    // variance of block means over that of means of independent residuals; 0: too few blocks
+    double scale = 0;        // robust 1-sigma of the residuals
+    double correlation = 0;  // variance of block means over that of means of independent residuals; 0: too few blocks
 };
 
-// From second differences of the means of neighbouring blocks: they do not see trends, so that a surface that is not quite
-// quadratic does not pass for correlated noise.
+// From second differences of the means of neighbouring blocks: they do not see trends, so that a surface that is not
+// quite quadratic does not pass for correlated noise.
 double block_correlation(const QuadraticFit& fit) {
-    constexpr std::size_t kBlocks = 7;      // across the ball: wider than the correlation reaches, enough to average
-    constexpr double kLeast = 5;            // residuals in a block
+    constexpr std::size_t kBlocks = 7;  // across the ball: wider than the correlation reaches, enough to average
+    constexpr double kLeast = 5;        // residuals in a block
     std::array<std::array<double, kBlocks>, kBlocks> sum{}, count{};
     double within = 0, taken = 0;
     for (std::size_t i = 0; i < fit.size(); ++i) {
         if (fit.weight(i) > 0) {
-            const auto column = [](double x) { return static_cast<std::size_t>(std::clamp((x + 1) / 2 * kBlocks, 0.0, kBlocks - 0.5)); };
+            const auto column = [](double x) {
+                return static_cast<std::size_t>(std::clamp((x + 1) / 2 * kBlocks, 0.0, kBlocks - 0.5));
+            };
             sum[column(fit.u(i))][column(fit.s(i))] += fit.residual(i);
             count[column(fit.u(i))][column(fit.s(i))] += 1;
             within += fit.residual(i) * fit.residual(i);
@@ -94,7 +97,8 @@ double block_correlation(const QuadraticFit& fit) {
     const auto add = [&](std::size_t a, std::size_t b, std::size_t da, std::size_t db) {
         const double n[3] = {count[a][b], count[a + da][b + db], count[a + 2 * da][b + 2 * db]};
         if (std::min({n[0], n[1], n[2]}) >= kLeast) {
-            const double difference = sum[a][b] / n[0] - 2 * sum[a + da][b + db] / n[1] + sum[a + 2 * da][b + 2 * db] / n[2];
+            const double difference =
+                sum[a][b] / n[0] - 2 * sum[a + da][b + db] / n[1] + sum[a + 2 * da][b + 2 * db] / n[2];
             found += difference * difference;
             independent += within / taken * (1 / n[0] + 4 / n[1] + 1 / n[2]);
         }
@@ -136,7 +140,8 @@ Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) 
     return {true, fit.scale(), block_correlation(fit)};
 }
 
-std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places, const std::vector<double>& radius) {
+std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places,
+                               const std::vector<double>& radius) {
     std::vector<Patch> patches(places.size());
     parallel_for(places.size(), 16, [&](std::size_t k) { patches[k] = fit_patch(grid, places[k], radius[k]); });
     return patches;
@@ -149,8 +154,8 @@ std::vector<double> times(double factor, std::vector<double> values) {
     return values;
 }
 
-// Of the patches' residual scales, each divided by its unit. Places on edges are rough for another reason: look below the
-// median.
+// Of the patches' residual scales, each divided by its unit. Places on edges are rough for another reason: look below
+// the median.
 double typical_scale(const std::vector<Patch>& patches, const std::vector<double>& unit) {
     std::vector<double> scales;
     for (std::size_t k = 0; k < patches.size(); ++k) {
@@ -161,8 +166,8 @@ double typical_scale(const std::vector<Patch>& patches, const std::vector<double
     return quantile(scales, 0.4);
 }
 
-// Wide balls show noise that neighbours share over more than its own range. Only the smooth ones count; what they see as
-// noise is less biased than what a small ball leaves, too.
+// Wide balls show noise that neighbours share over more than its own range. Only the smooth ones count; what they see
+// as noise is less biased than what a small ball leaves, too.
 void refine_by_wide_balls(ScanScale& overall, const std::vector<Patch>& wide) {
     const std::vector<double> one(wide.size(), 1);
     const double smooth = 1.3 * typical_scale(wide, one);
@@ -181,8 +186,10 @@ void refine_by_wide_balls(ScanScale& overall, const std::vector<Patch>& wide) {
     }
 }
 
-// Each place by what its nearest ones say together: single patches hang on a hundred points, some of them across an edge.
-std::vector<ScanScale> smoothed(const ScaleField& field, const std::vector<double>& spacing, const std::vector<Patch>& patches, double noise_factor) {
+// Each place by what its nearest ones say together: single patches hang on a hundred points, some of them across an
+// edge.
+std::vector<ScanScale> smoothed(const ScaleField& field, const std::vector<double>& spacing,
+                                const std::vector<Patch>& patches, double noise_factor) {
     constexpr std::size_t kNearest = 13;
     std::vector<ScanScale> local(field.place.size(), field.overall);
     parallel_for(local.size(), 16, [&](std::size_t k) {
@@ -256,8 +263,8 @@ ScaleField estimate_scale(std::span<const Eigen::Vector3f> points) {
     if (overall.spacing <= 0) {
         return field;
     }
-    // Balls as wide as six point distances, each by its own; where noise exceeds the spacing a wider one is needed to see
-    // a surface.
+    // Balls as wide as six point distances, each by its own; where noise exceeds the spacing a wider one is needed to
+    // see a surface.
     for (double& h : spacing) {
         h = std::max(h, 1e-3 * overall.spacing);
     }

@@ -15,16 +15,16 @@ struct ScanScale {
     double correlation = 1;  ///< variance of means of neighbouring points over that of as many independent ones, >= 1
 };
 
-/// Flags of the points that lie within a hundred extents of the bulk of the scan; empty when all do. A single return from
-/// the end of the world must not set the size of a grid's cells.
+/// Flags of the points that lie within a hundred extents of the bulk of the scan; empty when all do. A single return
+/// from the end of the world must not set the size of a grid's cells.
 std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points);
 
-/// The scale of a scan as a whole and place by place: a depth camera's points lie twice as far apart and are four times as
-/// noisy at twice the distance, and a surface seen at a slant is sparser than one seen square.
+/// The scale of a scan as a whole and place by place: a depth camera's points lie twice as far apart and are four times
+/// as noisy at twice the distance, and a surface seen at a slant is sparser than one seen square.
 struct ScaleField {
-    ScanScale overall;                       ///< median over the places; spacing and noise 0 for fewer than 50 points
-    std::vector<Eigen::Vector3d> place;      ///< mm, spread over the scan
-    std::vector<ScanScale> local;            ///< of each place, smoothed over its nearest ones
+    ScanScale overall;                   ///< median over the places; spacing and noise 0 for fewer than 50 points
+    std::vector<Eigen::Vector3d> place;  ///< mm, spread over the scan
+    std::vector<ScanScale> local;        ///< of each place, smoothed over its nearest ones
 
     /// Of the nearest place; p in the frame of the points.
     ScanScale at(const Eigen::Vector3d& p) const;

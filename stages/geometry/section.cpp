@@ -35,11 +35,12 @@ std::optional<Frame> frame_of(const Section& section) {
 // What two fits within a small window tell of the flanks.
 using FirstLook = std::array<Flank, 2>;
 
-// Points of both flanks within the window and no closer to the seam than its band. Without a first look at the flanks the
-// gate is a wedge: it opens with the distance from the seam, so that a guess a few degrees off still sees its flank, but
-// never reaches the other flank. After it each flank is carried on, and ends where it comes near to the other: the seam may
-// bend within the window.
-std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& w, const FirstLook* look) {
+// Points of both flanks within the window and no closer to the seam than its band. Without a first look at the flanks
+// the gate is a wedge: it opens with the distance from the seam, so that a guess a few degrees off still sees its
+// flank, but never reaches the other flank. After it each flank is carried on, and ends where it comes near to the
+// other: the seam may bend within the window.
+std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& w,
+                                  const FirstLook* look) {
     std::array<FlankPoints, 2> samples;
     const double sine = f.n[0].cross(f.n[1]).norm(), opening = std::numbers::pi - std::atan2(sine, f.n[0].dot(f.n[1]));
     const double slope = std::tan(std::min(0.3 * opening, kGateSlope)), base = 4 * scale.noise + scale.spacing;
@@ -64,7 +65,8 @@ std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale,
         for (const double u : {nearest, w.away}) {
             for (const double s : {-w.along, w.along}) {
                 for (const double side : {-1.0, 1.0}) {
-                    const double z = look ? std::abs(residual((*look)[k], u, s, 0)) + gate((*look)[k], u, s) : base + slope * u;
+                    const double z =
+                        look ? std::abs(residual((*look)[k], u, s, 0)) + gate((*look)[k], u, s) : base + slope * u;
                     const Eigen::Vector3d corner = f.p + u * f.d[k] + s * f.t + side * z * f.n[k];
                     low = low.cwiseMin(corner);
                     high = high.cwiseMax(corner);
@@ -82,7 +84,8 @@ std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale,
             for (std::size_t k = 0; k < 2; ++k) {
                 const double u = v.dot(f.d[k]), z = v.dot(f.n[k]);
                 if (u >= nearest && u <= w.away && wanted(k, v, u, s, z)) {
-                    samples[k].points.push_back({static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), lot_of(q)});
+                    samples[k].points.push_back(
+                        {static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), lot_of(q)});
                 }
             }
         }
@@ -98,7 +101,8 @@ SectionWindow first_window(const ScanScale& scale, const SectionWindow& window) 
     return {std::min(window.along, follow.along), std::min(window.away, follow.away), window.band};
 }
 
-std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& window) {
+std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scale, const Frame& f,
+                                    const SectionWindow& window) {
     const SectionWindow near = first_window(scale, window);
     const auto samples = gather(grid, scale, f, near, nullptr);
     FirstLook look;
@@ -112,9 +116,9 @@ std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scal
     return look;
 }
 
-// Distances of the point in which the flanks meet from the guess, along each of them: Newton's method in the section plane on
-// u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2. Empty when they do not meet within the limit. The quadratics do: what the fits know
-// beyond them grows with the fourth power of the distance from the guess, on which the search closes in.
+// Distances of the point in which the flanks meet from the guess, along each of them: Newton's method in the section
+// plane on u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2. Empty when they do not meet within the limit. The quadratics do: what
+// the fits know beyond them grows with the fourth power of the distance from the guess, on which the search closes in.
 std::optional<Eigen::Vector2d> meet(const Frame& f, const Flank (&flank)[2], double limit) {
     Eigen::Vector2d u(0, 0);
     const auto value = [&](int k) { return flank[k].fit.value(u[k] / flank[k].window.away, 0); };
@@ -142,7 +146,8 @@ std::optional<Eigen::Vector2d> meet(const Frame& f, const Flank (&flank)[2], dou
 
 }  // namespace
 
-std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess, const SectionWindow& window) {
+std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
+                                      const SectionWindow& window) {
     const auto frame = frame_of(guess);
     if (!frame) {
         return std::nullopt;
@@ -187,7 +192,8 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
     return result;
 }
 
-std::optional<SectionFit> settle_section(const PointGrid& grid, const ScanScale& scale, const Section& guess, const SectionWindow& window, int rounds) {
+std::optional<SectionFit> settle_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
+                                         const SectionWindow& window, int rounds) {
     auto fit = fit_section(grid, scale, guess, window);
     const Eigen::Vector3d start = guess.p;
     for (int round = 1; round < rounds && fit; ++round) {

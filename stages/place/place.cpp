@@ -9,7 +9,8 @@
 namespace seampath {
 namespace {
 
-// Largest distance of the points strictly between i and j (indices may run past the end of a closed seam) from the chord.
+// Largest distance of the points strictly between i and j (indices may run past the end of a closed seam) from the
+// chord.
 double chord_error(const std::vector<Eigen::Vector3d>& p, std::size_t i, std::size_t j) {
     const Eigen::Vector3d &a = p[i % p.size()], &b = p[j % p.size()];
     const double length2 = (b - a).squaredNorm();
@@ -23,12 +24,12 @@ double chord_error(const std::vector<Eigen::Vector3d>& p, std::size_t i, std::si
 }
 
 struct Path {
-    std::vector<std::size_t> index;      // first and last included; the last may be first + size for a closed seam
+    std::vector<std::size_t> index;  // first and last included; the last may be first + size for a closed seam
     double cost = std::numeric_limits<double>::infinity();
 };
 
-// Fewest chords from `first` to `last`, and of those the one with the least sum of squared chord errors: a shortest path
-// by dynamic programming over the chords that hold the tolerance. Neighbours always hold it.
+// Fewest chords from `first` to `last`, and of those the one with the least sum of squared chord errors: a shortest
+// path by dynamic programming over the chords that hold the tolerance. Neighbours always hold it.
 Path fewest_chords(const std::vector<Eigen::Vector3d>& p, std::size_t first, std::size_t last, const PlaceOptions& o) {
     const std::size_t n = last - first + 1;
     const double per_chord = static_cast<double>(n) * o.chord_tolerance_mm * o.chord_tolerance_mm * 2 + 1;
@@ -44,7 +45,7 @@ Path fewest_chords(const std::vector<Eigen::Vector3d>& p, std::size_t first, std
             }
             const double error = chord_error(p, first + i, first + j);
             if (error > 4 * o.chord_tolerance_mm) {
-                break;      // it does not come back within one spacing: the seam has turned away
+                break;  // it does not come back within one spacing: the seam has turned away
             }
             const double total = cost[i] + per_chord + error * error;
             if (error <= o.chord_tolerance_mm && total < cost[j]) {
@@ -66,14 +67,16 @@ Path fewest_chords(const std::vector<Eigen::Vector3d>& p, std::size_t first, std
 }  // namespace
 
 Fields describe(PlaceOptions& o) {
-    return {{"chord_tolerance_mm", &o.chord_tolerance_mm, "largest distance of the seam from the straight line between two nodes", above(0)},
+    return {{"chord_tolerance_mm", &o.chord_tolerance_mm,
+             "largest distance of the seam from the straight line between two nodes", above(0)},
             {"max_spacing_mm", &o.max_spacing_mm, "largest distance between two nodes along the seam", above(0)}};
 }
 
 Nodes place(const Seam& seam, const PlaceOptions& options) {
     const std::size_t n = seam.points.size();
     if (n < 4) {
-        throw InputError("place: the seam has " + std::to_string(n) + " points; at least 4 are needed; lower extract.station_mm");
+        throw InputError("place: the seam has " + std::to_string(n) +
+                         " points; at least 4 are needed; lower extract.station_mm");
     }
     std::vector<Eigen::Vector3d> p;
     for (const SeamPoint& point : seam.points) {

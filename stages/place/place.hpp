@@ -11,8 +11,8 @@ struct PlaceOptions {
 };
 Fields describe(PlaceOptions&);
 
-/// Fewest seam points such that every seam point lies within the chord tolerance of its interval's chord: every sample under
-/// the chord is tested, not only the middle. Denser where curvature is high.
+/// Fewest seam points such that every seam point lies within the chord tolerance of its interval's chord: every sample
+/// under the chord is tested, not only the middle. Denser where curvature is high.
 Nodes place(const Seam& seam, const PlaceOptions& options);
 
 }  // namespace seampath

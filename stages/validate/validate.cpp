@@ -13,11 +13,11 @@
 namespace seampath {
 namespace {
 
-constexpr double kNoiseTolerance = 3;        // tolerance by default, in sigmas of a single scan point
-constexpr double kLeastTolerance = 0.1;      // mm; tracking accuracy that arc welding asks of a path
-constexpr double kGuard = 2;                 // sigmas of the measurement taken off the tolerance (ISO 14253-1)
-constexpr double kMostSigma = 3;             // of the seam's usual sigma; a weaker fit says nothing about the model
-constexpr double kLeastDensity = 0.1;        // of the seam's usual density of flank points
+constexpr double kNoiseTolerance = 3;    // tolerance by default, in sigmas of a single scan point
+constexpr double kLeastTolerance = 0.1;  // mm; tracking accuracy that arc welding asks of a path
+constexpr double kGuard = 2;             // sigmas of the measurement taken off the tolerance (ISO 14253-1)
+constexpr double kMostSigma = 3;         // of the seam's usual sigma; a weaker fit says nothing about the model
+constexpr double kLeastDensity = 0.1;    // of the seam's usual density of flank points
 
 // Only scan points near the curve matter: those in cells of the window's size that the curve comes near to.
 PointGrid grid_near(const Scan& scan, const ArcLength& arc, double reach) {
@@ -37,12 +37,14 @@ PointGrid grid_near(const Scan& scan, const ArcLength& arc, double reach) {
     return {scan.points, reach / 8, keep};
 }
 
-// The middle of what the scale is along the seam: one tolerance and one window for a seam, by the part of the scan it lies in.
+// The middle of what the scale is along the seam: one tolerance and one window for a seam, by the part of the scan it
+// lies in.
 ScanScale scale_along(const ScaleField& field, const ArcLength& arc, const Eigen::Vector3d& origin) {
     constexpr int kPlaces = 25;
     std::vector<double> spacing, noise;
     for (int i = 0; i < kPlaces; ++i) {
-        const ScanScale here = field.at(position(arc.curve(), arc.parameter(arc.length() * (i + 0.5) / kPlaces)) - origin);
+        const ScanScale here =
+            field.at(position(arc.curve(), arc.parameter(arc.length() * (i + 0.5) / kPlaces)) - origin);
         spacing.push_back(here.spacing);
         noise.push_back(here.noise);
     }
@@ -79,31 +81,37 @@ void summarise(Deviation& result, const ValidateOptions& options) {
     const double guarded = result.p997_mm + kGuard * quantile(sigma, 0.5);
     const bool covered = result.coverage >= options.min_coverage, inside = guarded <= result.tolerance_mm;
     result.pass = covered && inside && !distance.empty();
-    result.verdict = std::string(result.pass ? "pass" : "fail") + ": p99.7 " + fixed(result.p997_mm, 3) + " mm + guard " +
-                     fixed(guarded - result.p997_mm, 3) + " mm " + (inside ? "within" : "exceeds") + " tolerance " +
-                     fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) + " % of the seam measured" +
+    result.verdict = std::string(result.pass ? "pass" : "fail") + ": p99.7 " + fixed(result.p997_mm, 3) +
+                     " mm + guard " + fixed(guarded - result.p997_mm, 3) + " mm " + (inside ? "within" : "exceeds") +
+                     " tolerance " + fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
+                     " % of the seam measured" +
                      (covered ? "" : ", less than " + fixed(100 * options.min_coverage, 1) + " %");
 }
 
 }  // namespace
 
 Fields describe(ValidateOptions& o) {
-    return {{"tolerance_mm", &o.tolerance_mm, "largest deviation that passes; 0: 3 sigmas of the scan's noise, at least 0.1 mm", at_least(0)},
-            {"min_coverage", &o.min_coverage, "least share of the seam that must be measured, not bridged", within(0, 1)}};
+    return {
+        {"tolerance_mm", &o.tolerance_mm,
+         "largest deviation that passes; 0: 3 sigmas of the scan's noise, at least 0.1 mm", at_least(0)},
+        {"min_coverage", &o.min_coverage, "least share of the seam that must be measured, not bridged", within(0, 1)}};
 }
 
 Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options) {
     const ScaleField field = estimate_scale(scan.points);
     if (field.overall.spacing <= 0) {
-        throw InputError("validate: the scan has " + std::to_string(scan.points.size()) + " points; surfaces were needed; use the scan that the seam came from");
+        throw InputError("validate: the scan has " + std::to_string(scan.points.size()) +
+                         " points; surfaces were needed; use the scan that the seam came from");
     }
     const ArcLength arc(model.curve);
     const ScanScale scale = scale_along(field, arc, scan.origin_mm);
     const SectionWindow window = measuring_window(scale);
     const PointGrid grid = grid_near(scan, arc, 1.3 * window.away);
-    const auto count = std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
+    const auto count =
+        std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
     Deviation result;
-    result.tolerance_mm = options.tolerance_mm > 0 ? options.tolerance_mm : std::max(kLeastTolerance, kNoiseTolerance * scale.noise);
+    result.tolerance_mm =
+        options.tolerance_mm > 0 ? options.tolerance_mm : std::max(kLeastTolerance, kNoiseTolerance * scale.noise);
     result.samples.resize(count);
     std::vector<double> density[2];
     density[0].assign(count, 0);

@@ -33,9 +33,8 @@ TEST(Ends, OfASparseFlankAreNotTakenForEarlier) {
 
 TEST(Ends, AHoleBeforeTheEndIsNoEnd) {
     auto points = floor_and_sparse_wall();
-    std::erase_if(points, [](const Eigen::Vector3f& p) {
-        return p.z() > 0.3f && (p - Eigen::Vector3f(77, 0, 5)).norm() < 2.5f;
-    });
+    std::erase_if(
+        points, [](const Eigen::Vector3f& p) { return p.z() > 0.3f && (p - Eigen::Vector3f(77, 0, 5)).norm() < 2.5f; });
     expect_ends(points, 0, 80);
 }
 

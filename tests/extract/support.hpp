@@ -24,8 +24,8 @@ inline double length_of(const Seam& seam) {
     return length;
 }
 
-/// The seam with a point between every two, on the cubic through the four around them: chords of 0.8 mm cut 0.003 mm off a
-/// bend of 30 mm radius.
+/// The seam with a point between every two, on the cubic through the four around them: chords of 0.8 mm cut 0.003 mm
+/// off a bend of 30 mm radius.
 inline Seam with_points_between(const Seam& seam) {
     Seam finer = seam;
     finer.points.clear();

@@ -93,19 +93,22 @@ TEST(QuadraticFit, ResidualsAreThoseOfItsCoefficients) {
     }
 }
 
-/// Noise-free points of a convex round surface of radius 20 that touches z = 0.3 at the origin and is seen from a frame that is
-/// `tilt` off; `u`, `s` in lengths of 12 and 9.
+/// Noise-free points of a convex round surface of radius 20 that touches z = 0.3 at the origin and is seen from a frame
+/// that is `tilt` off; `u`, `s` in lengths of 12 and 9.
 QuadraticFit fit_of_round_surface(bool sphere, const Eigen::Vector2d& tilt, bool lengths_known) {
-    const double radius = 20, along = 0.6;      // the cylinder's axis lies at this angle to u
-    const Eigen::Vector3d up = Eigen::Vector3d(-tilt.x(), -tilt.y(), 1).normalized(), centre = Eigen::Vector3d(0, 0, 0.3) - radius * up;
-    const Eigen::Vector3d axis = sphere ? Eigen::Vector3d::Zero() : up.cross(Eigen::Vector3d(std::cos(along), std::sin(along), 0)).normalized();
+    const double radius = 20, along = 0.6;  // the cylinder's axis lies at this angle to u
+    const Eigen::Vector3d up = Eigen::Vector3d(-tilt.x(), -tilt.y(), 1).normalized(),
+                          centre = Eigen::Vector3d(0, 0, 0.3) - radius * up;
+    const Eigen::Vector3d axis =
+        sphere ? Eigen::Vector3d::Zero() : up.cross(Eigen::Vector3d(std::cos(along), std::sin(along), 0)).normalized();
     QuadraticFit fit;
     fit.begin(0, lengths_known ? 12 : 0, lengths_known ? 9 : 0);
     for (double u = -0.2; u <= 1; u += 0.05) {
         for (double s = -1; s <= 1; s += 0.05) {
             // (v + z e)^2 without its part along the axis is radius^2: a quadratic in z.
             const auto across = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - v.dot(axis) * axis); };
-            const Eigen::Vector3d v = across(Eigen::Vector3d(12 * u, 9 * s, 0) - centre), e = across(Eigen::Vector3d::UnitZ());
+            const Eigen::Vector3d v = across(Eigen::Vector3d(12 * u, 9 * s, 0) - centre),
+                                  e = across(Eigen::Vector3d::UnitZ());
             const double b = v.dot(e) / e.squaredNorm(), c = (v.squaredNorm() - radius * radius) / e.squaredNorm();
             fit.add(u, s, -b + std::sqrt(b * b - c));
         }
@@ -116,7 +119,8 @@ QuadraticFit fit_of_round_surface(bool sphere, const Eigen::Vector2d& tilt, bool
 
 TEST(QuadraticFit, KnowsCylindersAndSpheresBeyondTheirParabola) {
     for (const bool sphere : {false, true}) {
-        for (const Eigen::Vector2d& tilt : {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.03, 0), Eigen::Vector2d(-0.02, 0.03)}) {
+        for (const Eigen::Vector2d& tilt :
+             {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.03, 0), Eigen::Vector2d(-0.02, 0.03)}) {
             const double parabola = std::abs(fit_of_round_surface(sphere, tilt, false).value(0, 0) - 0.3);
             const QuadraticFit fit = fit_of_round_surface(sphere, tilt, true);
             EXPECT_GT(parabola, 5e-3) << "a parabola does as well: nothing is tested";

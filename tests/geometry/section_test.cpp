@@ -101,8 +101,10 @@ TEST(Section, SigmaKnowsOfNoiseThatNeighboursShare) {
         const Random random(seed, 77);
         for (auto& p : points) {
             const bool floor = p.z() < 1e-6f;
-            const auto column = static_cast<std::uint64_t>((p.x() + 25) / 1.5f), row = static_cast<std::uint64_t>((floor ? p.y() : p.z()) / 1.5f);
-            (floor ? p.z() : p.y()) += static_cast<float>(0.045 * random.normal(column * 1000 + row + (floor ? 0 : 500)));
+            const auto column = static_cast<std::uint64_t>((p.x() + 25) / 1.5f),
+                       row = static_cast<std::uint64_t>((floor ? p.y() : p.z()) / 1.5f);
+            (floor ? p.z() : p.y()) +=
+                static_cast<float>(0.045 * random.normal(column * 1000 + row + (floor ? 0 : 500)));
         }
         return points;
     };
@@ -111,7 +113,8 @@ TEST(Section, SigmaKnowsOfNoiseThatNeighboursShare) {
     for (std::uint64_t i = 0; i < kTrials; ++i) {
         const auto points = points_with(i + 1);
         // The scan as a whole did not tell: a correlation of 1.
-        const auto fit = fit_section(PointGrid(points, 1.2), {0.3, 0.045, 1}, wedge_section(90 * kDegree), {15, 15, 1.2});
+        const auto fit =
+            fit_section(PointGrid(points, 1.2), {0.3, 0.045, 1}, wedge_section(90 * kDegree), {15, 15, 1.2});
         ASSERT_TRUE(fit);
         sum += fit->section.p.tail<2>().squaredNorm() / (fit->sigma * fit->sigma);
     }
