@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "stages/extract/whole.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 
@@ -305,6 +306,7 @@ std::optional<Seam> measure_track(const Tracker& following, const Track& track, 
     if (way.size() < kLeastPlaces) {
         return std::nullopt;
     }
+    settle_on_whole_flanks(tracker, way);
     Seam seam;
     seam.closed = track.closed;
     double bend = 0;

@@ -52,6 +52,21 @@ bool met(const std::vector<Track>& taken, const Section& place, double reach) {
     return std::any_of(taken.begin(), taken.end(), [&](const Track& track) { return lies_on(track, place, reach); });
 }
 
+std::vector<FlankSample> slab_of(const SectionFit& at, int k, double half) {
+    const QuadraticFit& fit = at.flank[k].fit;
+    const SectionWindow& window = at.flank[k].window;
+    const SectionFrame& f = at.frame;
+    std::vector<FlankSample> slab;
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        const double u = fit.u(i) * window.away, s = fit.s(i) * window.along;
+        if (std::abs(s) <= half && fit.weight(i) > 0) {
+            const Eigen::Vector3d p = f.p + u * f.d[k] + s * f.t + fit.z(i) * f.n[k];
+            slab.push_back({p.cast<float>(), static_cast<float>(u)});
+        }
+    }
+    return slab;
+}
+
 enum class End { open, closed };
 
 // Extends `way` in one direction (+1: along n1 x n2) as far as the joint is measured. Coming back to its own course it
@@ -93,8 +108,12 @@ std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) con
     point.away = std::min(fit->flank[0].window.away, fit->flank[1].window.away);
     point.rough =
         std::max(fit->flank[0].fit.scale() / fit->flank[0].noise, fit->flank[1].fit.scale() / fit->flank[1].noise);
-    point.support[0] = fit->flank[0].slab_points;
-    point.support[1] = fit->flank[1].slab_points;
+    for (int k = 0; k < 2; ++k) {
+        point.support[k] = fit->flank[k].slab_points;
+        point.flank_scale[k] = fit->flank[k].fit.scale();
+        point.flank_sigma[k] = fit->flank[k].sigma;
+        point.slab[k] = slab_of(*fit, k, 0.5 * step);
+    }
     return point;
 }
 

@@ -8,17 +8,26 @@
 
 namespace seampath::detail {
 
+/// A scan point of a flank, and how far from the seam it lies, mm.
+struct FlankSample {
+    Eigen::Vector3f p;
+    float u;
+};
+
 /// One measured place of a seam that is being followed.
 struct TrackPoint {
     Section section;
-    Eigen::Vector3d t{0, 0, 0};  ///< unit, direction of travel, n1 x n2
-    double sigma = 0;            ///< mm
-    double bend = 0;             ///< rad
-    double along = 0;            ///< mm, half length over which the flanks were fitted
-    double away = 0;             ///< mm, how far from the seam the narrower flank is one smooth surface
-    double rough = 0;            ///< residual scale of the rougher flank, in its noises
-    double support[2] = {0, 0};  ///< points per mm^2 of each flank at this very place
-    bool modelled = false;       ///< no support here, but before and after
+    Eigen::Vector3d t{0, 0, 0};        ///< unit, direction of travel, n1 x n2
+    double sigma = 0;                  ///< mm
+    double bend = 0;                   ///< rad
+    double along = 0;                  ///< mm, half length over which the flanks were fitted
+    double away = 0;                   ///< mm, how far from the seam the narrower flank is one smooth surface
+    double rough = 0;                  ///< residual scale of the rougher flank, in its noises
+    double flank_scale[2] = {0, 0};    ///< mm, robust 1-sigma of each flank's points about its surface
+    double flank_sigma[2] = {0, 0};    ///< mm, of the place across each flank
+    std::vector<FlankSample> slab[2];  ///< points of each flank within half a step of this place
+    double support[2] = {0, 0};        ///< points per mm^2 of each flank at this very place
+    bool modelled = false;             ///< no support here, but before and after
 };
 
 struct Track {

@@ -47,6 +47,7 @@ public:
     std::size_t size() const { return z_.size(); }
     double u(std::size_t i) const { return u_[i]; }
     double s(std::size_t i) const { return s_[i]; }
+    double z(std::size_t i) const { return z_[i]; }
 
     /// False when the points do not determine the six coefficients. `least_scale` keeps the scale from collapsing on
     /// data that are exact or quantised, same unit as z.

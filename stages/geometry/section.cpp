@@ -13,12 +13,8 @@ namespace {
 
 constexpr double kGateSlope = 20 * std::numbers::pi / 180;
 
-struct Frame {
-    Eigen::Vector3d p, t, n[2], d[2];
-};
-
-std::optional<Frame> frame_of(const Section& section) {
-    Frame f;
+std::optional<SectionFrame> frame_of(const Section& section) {
+    SectionFrame f;
     f.p = section.p;
     f.n[0] = section.n1;
     f.n[1] = section.n2;
@@ -39,8 +35,8 @@ using FirstLook = std::array<Flank, 2>;
 // the gate is a wedge: it opens with the distance from the seam, so that a guess a few degrees off still sees its
 // flank, but never reaches the other flank. After it each flank is carried on, and ends where it comes near to the
 // other: the seam may bend within the window.
-std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale, const Frame& f, const SectionWindow& w,
-                                  const FirstLook* look) {
+std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale, const SectionFrame& f,
+                                  const SectionWindow& w, const FirstLook* look) {
     std::array<FlankPoints, 2> samples;
     const double sine = f.n[0].cross(f.n[1]).norm(), opening = std::numbers::pi - std::atan2(sine, f.n[0].dot(f.n[1]));
     const double slope = std::tan(std::min(0.3 * opening, kGateSlope)), base = 4 * scale.noise + scale.spacing;
@@ -101,7 +97,7 @@ SectionWindow first_window(const ScanScale& scale, const SectionWindow& window) 
     return {std::min(window.along, follow.along), std::min(window.away, follow.away), window.band};
 }
 
-std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scale, const Frame& f,
+std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scale, const SectionFrame& f,
                                     const SectionWindow& window) {
     const SectionWindow near = first_window(scale, window);
     const auto samples = gather(grid, scale, f, near, nullptr);
@@ -119,7 +115,7 @@ std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scal
 // Distances of the point in which the flanks meet from the guess, along each of them: Newton's method in the section
 // plane on u1 d1 + f1(u1) n1 = u2 d2 + f2(u2) n2. Empty when they do not meet within the limit. The quadratics do: what
 // the fits know beyond them grows with the fourth power of the distance from the guess, on which the search closes in.
-std::optional<Eigen::Vector2d> meet(const Frame& f, const Flank (&flank)[2], double limit) {
+std::optional<Eigen::Vector2d> meet(const SectionFrame& f, const Flank (&flank)[2], double limit) {
     Eigen::Vector2d u(0, 0);
     const auto value = [&](int k) { return flank[k].fit.value(u[k] / flank[k].window.away, 0); };
     const auto slope = [&](int k) {
@@ -152,7 +148,7 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
     if (!frame) {
         return std::nullopt;
     }
-    const Frame& f = *frame;
+    const SectionFrame& f = *frame;
     auto look = first_look(grid, scale, f, window);
     if (!look) {
         return std::nullopt;
@@ -165,6 +161,7 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
         }
     }
     SectionFit result;
+    result.frame = f;
     for (std::size_t k = 0; k < 2; ++k) {
         result.flank[k] = std::move((*look)[k]);
         settle_flank(result.flank[k], scale);

@@ -19,9 +19,15 @@ struct Section {
     Eigen::Vector3d n2;
 };
 
+/// Coordinates at a section: a point of flank k is p + u d[k] + s t + z n[k].
+struct SectionFrame {
+    Eigen::Vector3d p, t, n[2], d[2];
+};
+
 struct SectionFit {
-    Section section;    ///< p: where the fitted flanks meet; normals: of the fitted flanks there
-    Eigen::Vector3d t;  ///< unit, n1 x n2
+    SectionFrame frame;  ///< that the flanks are expressed in
+    Section section;     ///< p: where the fitted flanks meet; normals: of the fitted flanks there
+    Eigen::Vector3d t;   ///< unit, n1 x n2
     Flank flank[2];
     double bend = 0;   ///< rad, angle between n1 and n2: 0 is flat
     double shift = 0;  ///< mm, how far p moved from where the search began
