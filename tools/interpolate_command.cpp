@@ -7,6 +7,7 @@
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
 #include "stages/text.hpp"
+#include "tools/choice.hpp"
 #include "tools/commands.hpp"
 #include "tools/interpolation.hpp"
 #include "tools/output.hpp"
@@ -82,14 +83,6 @@ void take_checks(const std::string& file, Comparison& comparison) {
     }
 }
 
-std::size_t index_of(const std::string& option, const std::string& word, std::span<const std::string_view> names) {
-    const auto found = std::find(names.begin(), names.end(), word);
-    if (found == names.end()) {
-        throw InputError(option + ": \"" + word + "\" is unknown; there are " + join(names) + hint(word, names));
-    }
-    return static_cast<std::size_t>(found - names.begin());
-}
-
 InterpolateOptions options_of(const Arguments& given) {
     InterpolateOptions options;
     if (given.degree < 1 || given.degree > static_cast<int>(kMaxDegree)) {
@@ -118,7 +111,7 @@ void add(Method method, const Arguments& given, Comparison& comparison) {
         MethodResult result{std::string(name(method)), {}, {}, {}};
         if (parametric) {
             options.parametrization =
-                static_cast<Objective>(index_of("--parametrization", parametrization, kObjectiveNames));
+                static_cast<Objective>(choice("--parametrization", parametrization, kObjectiveNames));
             result.label += " (" + parametrization + ")";
         }
         result.line = interpolate(method, comparison.x, comparison.y, options);
@@ -162,12 +155,12 @@ Comparison compare(const Arguments& given) {
     comparison.at = given.at;
     if (given.methods == std::vector<std::string>{"all"}) {
         for (const auto& parametrization : given.parametrizations) {
-            index_of("--parametrization", parametrization, kObjectiveNames);
+            choice("--parametrization", parametrization, kObjectiveNames);
         }
         add_all(given, comparison);
     } else {
         for (const auto& method : given.methods) {
-            add(static_cast<Method>(index_of("--method", method, kMethodNames)), given, comparison);
+            add(static_cast<Method>(choice("--method", method, kMethodNames)), given, comparison);
         }
     }
     std::stable_sort(comparison.results.begin(), comparison.results.end(),

@@ -8,6 +8,7 @@
 #include "stages/error.hpp"
 #include "stages/geometry/parametrize.hpp"
 #include "stages/text.hpp"
+#include "tools/choice.hpp"
 #include "tools/commands.hpp"
 #include "tools/output.hpp"
 #include "tools/table.hpp"
@@ -30,19 +31,10 @@ struct Arguments {
     bool json = false;
 };
 
-template <std::size_t N>
-std::size_t chosen(const std::string& option, const std::string& word, const std::array<std::string_view, N>& names) {
-    const auto found = std::find(names.begin(), names.end(), word);
-    if (found == names.end()) {
-        throw InputError(option + ": \"" + word + "\" is unknown; there are " + join(names) + hint(word, names));
-    }
-    return static_cast<std::size_t>(found - names.begin());
-}
-
 ParametrizeOptions options_of(const Arguments& given) {
     ParametrizeOptions options;
-    options.objective = static_cast<Objective>(chosen("--objective", given.objective, kObjectiveNames));
-    options.solver = static_cast<Solver>(chosen("--solver", given.solver, kSolverNames));
+    options.objective = static_cast<Objective>(choice("--objective", given.objective, kObjectiveNames));
+    options.solver = static_cast<Solver>(choice("--solver", given.solver, kSolverNames));
     if (options.solver == Solver::gradient_projection && options.objective != Objective::exact &&
         options.objective != Objective::diagonal) {
         throw InputError("--solver: gradient-projection is for the objectives exact and diagonal, not for " +

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stages/error.hpp"
+#include "stages/geometry/golden_section.hpp"
 
 namespace seampath {
 namespace {
@@ -14,16 +15,6 @@ constexpr int kSamples = 64;  ///< of an interval
 
 double sample(const Interpolant& line, std::size_t i, int k) {
     return k == kSamples ? line.t[i + 1] : line.t[i] + (line.t[i + 1] - line.t[i]) * k / kSamples;
-}
-
-/// The least of f in [low, high] by golden sections, where it has one minimum.
-double least(const std::function<double(double)>& f, double low, double high) {
-    constexpr double kRatio = 0.61803398874989485;
-    for (int i = 0; i < 60; ++i) {
-        const double a = high - kRatio * (high - low), b = low + kRatio * (high - low);
-        (f(a) < f(b) ? high : low) = f(a) < f(b) ? b : a;
-    }
-    return f((low + high) / 2);
 }
 
 /// Shortest distance of p from the line: the best sample, refined between its neighbours. |e| bounds it, so only
@@ -43,7 +34,7 @@ double distance(const Interpolant& line, std::span<const double> nodes, const Ve
             const double here = std::min(away(sample(line, i, k)), away(sample(line, i, k + 1)));
             const double piece = (line.at(sample(line, i, k + 1)) - line.at(sample(line, i, k))).norm();
             if (here - piece < best) {
-                best = std::min(best, least(away, sample(line, i, k), sample(line, i, k + 1)));
+                best = std::min(best, away(golden_section(away, sample(line, i, k), sample(line, i, k + 1))));
             }
         }
     }

@@ -8,6 +8,7 @@
 
 #include "stages/error.hpp"
 #include "stages/geometry/bending.hpp"
+#include "stages/geometry/golden_section.hpp"
 #include "stages/geometry/lbfgs.hpp"
 #include "stages/text.hpp"
 
@@ -122,24 +123,6 @@ Optimum least_peak(const Bending& bending, const VectorXd& start, double toleran
     return at;
 }
 
-/// The lambda in [0, highest) of the least value, by golden sections.
-double golden_section(const std::function<double(double)>& f, double highest) {
-    constexpr double kRatio = 0.61803398874989485;
-    double a = 0, b = highest;
-    double c = b - kRatio * (b - a), d = a + kRatio * (b - a);
-    double fc = f(c), fd = f(d);
-    while (b - a > 1e-10 * b) {
-        if (!(fd < fc)) {
-            b = d, d = c, fd = fc;
-            c = b - kRatio * (b - a), fc = f(c);
-        } else {
-            a = c, c = d, fc = fd;
-            d = a + kRatio * (b - a), fd = f(d);
-        }
-    }
-    return (a + b) / 2;
-}
-
 /// (30), with the line search that the paper asks for.
 Optimum gradient_projection(const Energy& energy, const VectorXd& start, double tolerance, int evaluations) {
     Optimum at{start, 1, 0, false};
@@ -147,8 +130,12 @@ Optimum gradient_projection(const Energy& energy, const VectorXd& start, double 
     double value = energy(at.h, &gradient);
     while (at.evaluations < evaluations && !at.converged) {
         const VectorXd d = gradient.array() - gradient.mean();
+        if (d.isZero(0)) {
+            at.converged = true;
+            break;
+        }
         const double highest = 1 / (d.array() / at.h.array()).maxCoeff();  // above 0: d has mean 0
-        const double lambda = golden_section([&](double l) { return energy(at.h - l * d, nullptr); }, highest);
+        const double lambda = golden_section([&](double l) { return energy(at.h - l * d, nullptr); }, 0, highest);
         const VectorXd h = normalised(at.h - lambda * d);
         VectorXd next_gradient(h.size());
         const double next = energy(h, &next_gradient);

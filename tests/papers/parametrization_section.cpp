@@ -4,16 +4,13 @@
 #include "stages/geometry/bending.hpp"
 #include "stages/geometry/parametrize.hpp"
 #include "stages/text.hpp"
+#include "tests/papers/parametrized.hpp"
 #include "tests/papers/sections.hpp"
-#include "tests/papers/tables.hpp"
 
 namespace seampath {
 namespace {
 
-using Points = std::vector<Eigen::VectorXd>;
 using Rows = std::vector<std::vector<std::string>>;
-
-const std::vector<double> kRobotWeights{1, 1, 2, 6, 6, 6};
 
 Parametrization least(const Points& points, Objective objective, const std::vector<double>& weights) {
     ParametrizeOptions options;
@@ -28,18 +25,7 @@ struct AtPrint {
     Eigen::VectorXd h;
 
     AtPrint(const Points& points, const std::vector<double>& t, const std::vector<double>& weights)
-        : bending(matrix(points), weights), h(static_cast<Eigen::Index>(t.size()) - 1) {
-        for (Eigen::Index i = 0; i < h.size(); ++i) {
-            h[i] = t[static_cast<std::size_t>(i) + 1] - t[static_cast<std::size_t>(i)];
-        }
-    }
-    static Eigen::MatrixXd matrix(const Points& points) {
-        Eigen::MatrixXd z(static_cast<Eigen::Index>(points.size()), points[0].size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            z.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
-        }
-        return z;
-    }
+        : bending(as_matrix(points), weights), h(spacing(t)) {}
 };
 
 std::string worst(const std::vector<double>& a, const std::vector<double>& b) {

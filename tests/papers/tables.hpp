@@ -31,6 +31,24 @@ inline std::vector<Eigen::VectorXd> paper_points(const std::string& name) {
     return points;
 }
 
+/// Points as rows.
+inline Eigen::MatrixXd as_matrix(const std::vector<Eigen::VectorXd>& points) {
+    Eigen::MatrixXd z(static_cast<Eigen::Index>(points.size()), points[0].size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        z.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+    }
+    return z;
+}
+
+/// h_i = t_i - t_{i-1}.
+inline Eigen::VectorXd spacing(const std::vector<double>& t) {
+    Eigen::VectorXd h(static_cast<Eigen::Index>(t.size()) - 1);
+    for (Eigen::Index i = 0; i < h.size(); ++i) {
+        h[i] = t[static_cast<std::size_t>(i) + 1] - t[static_cast<std::size_t>(i)];
+    }
+    return h;
+}
+
 /// Ordinates as points of one dimension.
 inline std::vector<Eigen::VectorXd> as_points(const std::vector<double>& values) {
     std::vector<Eigen::VectorXd> points;
