@@ -181,6 +181,12 @@ TEST(Parametrize, FoleyWidensIntervalsBesideCorners) {
               1e-15);
 }
 
+TEST(Parametrize, FoleyCountsNoTurnForMoreThanARightAngle) {
+    const Points back{Eigen::Vector2d(0, 0), Eigen::Vector2d(2, 0), Eigen::Vector2d(1, 0)};
+    const double first = 2 * (1 + 1.5 * (M_PI / 2) / 3), second = 1 + 1.5 * (M_PI / 2) * 2 / 3;
+    EXPECT_DOUBLE_EQ(solved(back, Objective::foley).t[1], first / (first + second));
+}
+
 // Reversed points give reversed parameters, and neither place, size nor orientation matters.
 TEST(Parametrize, MovesWithThePoints) {
     std::mt19937 random(4);
