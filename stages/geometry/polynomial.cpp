@@ -24,19 +24,15 @@ double newton_value(std::span<const double> x, std::span<const double> differenc
 }
 
 double lagrange_value(std::span<const double> x, std::span<const double> y, double at) {
-    double above = 0, below = 0;
+    double sum = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        if (at == x[i]) {
-            return y[i];
-        }
-        double weight = 1 / (at - x[i]);
+        double term = y[i];
         for (std::size_t j = 0; j < x.size(); ++j) {
-            weight /= j == i ? 1 : x[i] - x[j];
+            term *= j == i ? 1 : (at - x[j]) / (x[i] - x[j]);
         }
-        above += weight * y[i];
-        below += weight;
+        sum += term;
     }
-    return above / below;
+    return sum;
 }
 
 std::vector<double> power_coefficients(std::span<const double> x, std::span<const double> differences) {

@@ -11,8 +11,8 @@ std::vector<double> divided_differences(std::span<const double> x, std::span<con
 /// y[x_0] + y[x_0, x_1] (at - x_0) + ..., (8) with divided differences.
 double newton_value(std::span<const double> x, std::span<const double> differences, double at);
 
-/// The same polynomial by Lagrange's formula in its barycentric form (Berrut & Trefethen 2004, (4.2)), which loses no
-/// digits near the nodes.
+/// The same polynomial by Lagrange's formula. Not in its second barycentric form, which takes less time but divides by
+/// a difference of large numbers when the distances of the nodes differ by many powers of ten.
 double lagrange_value(std::span<const double> x, std::span<const double> y, double at);
 
 /// Its coefficients a_0, a_1, ... of the powers of x.

@@ -208,5 +208,14 @@ TEST(Polynomial, NewtonAndLagrangeAreOne) {
     }
 }
 
+TEST(Polynomial, NodesOfAllDistancesAreServed) {
+    const Values x{-5.4e10, -3, 0, 3.3e-14, 0.4, 1}, y{1, -2, 0, 1, 3, 1};
+    for (const double at : {-4e10, -1e10, -5.0, 1e-14, 0.7}) {
+        const auto exact = static_cast<double>(lagrange(x, y, 0, 6, at));
+        EXPECT_NEAR(lagrange_value(x, y, at) / exact, 1, 1e-12) << at;
+        EXPECT_NEAR(newton_value(x, divided_differences(x, y), at) / exact, 1, 1e-12) << at;
+    }
+}
+
 }  // namespace
 }  // namespace seampath
