@@ -19,7 +19,7 @@ constexpr double kLeastNoise = 0.02;  // what counts as noise where a scan has n
 constexpr int kBins = 5;
 constexpr std::size_t kLeastPoints = 24;
 constexpr std::size_t kEnoughPoints =
-    24000;  // a flank's: more add time and, their noise being shared, nothing to the fit
+    12000;  // a flank's: more add time and, their noise being shared, nothing to the fit
 
 // Largest mean residual over bins across one variable, in units of what noise allows.
 double misfit(const QuadraticFit& fit, double low, double high, bool over_u, double noise, double correlation) {
