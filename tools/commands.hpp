@@ -22,6 +22,7 @@ Command check_command(CLI::App& program);
 Command info_command(CLI::App& program);
 Command options_command(CLI::App& program);
 Command dataset_command(CLI::App& program);
+Command interpolate_command(CLI::App& program);
 Command parametrize_command(CLI::App& program);
 
 }  // namespace seampath

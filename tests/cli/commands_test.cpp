@@ -165,8 +165,15 @@ TEST(Cli, UnknownCommandsAndFlagsGiveAHintAndStatus2) {
 
 TEST(Cli, EveryHelpHasThreeWorkedExamples) {
     using Words = std::vector<std::string>;
-    for (const Words& command : std::vector<Words>{
-             {"run"}, {"check"}, {"info"}, {"options"}, {"dataset"}, {"dataset", "make"}, {"parametrize"}, {}}) {
+    for (const Words& command : std::vector<Words>{{"run"},
+                                                   {"check"},
+                                                   {"info"},
+                                                   {"options"},
+                                                   {"dataset"},
+                                                   {"dataset", "make"},
+                                                   {"interpolate"},
+                                                   {"parametrize"},
+                                                   {}}) {
         auto arguments = command;
         arguments.push_back("--help");
         const Outcome help = seampath_program(arguments);

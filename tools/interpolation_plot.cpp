@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <array>
+
+#include "pipeline/report_text.hpp"
+#include "pipeline/svg.hpp"
+#include "tools/interpolation.hpp"
+
+namespace seampath {
+namespace {
+
+// Told apart by people with any kind of colour vision (Paul Tol's muted and vibrant schemes).
+constexpr std::array<const char*, 10> kColours{"#332288", "#cc3311", "#117733", "#ee7733", "#0077bb",
+                                               "#882255", "#44aa99", "#999933", "#cc6677", "#bbbbbb"};
+
+// CSS pixels.
+constexpr double kWidth = 760, kHeight = 480, kLegend = 190, kLine = 18;
+
+std::string line_class(std::size_t i) {
+    return "line" + std::to_string(i);
+}
+
+/// Colours come again with dashes.
+std::string style(const Comparison& comparison) {
+    std::string css =
+        "text { font: 11px sans-serif; fill: #5b6775; } .grid { stroke: #edf0f3; } .axis { stroke: #8b95a0; } "
+        ".middle { text-anchor: middle; } .end { text-anchor: end; } path { fill: none; stroke-width: 1.4; } "
+        ".node { fill: #fff; stroke: #1c2530; } .check { fill: #1c2530; }";
+    for (std::size_t i = 0; i < comparison.results.size(); ++i) {
+        css += " ." + line_class(i) + " { stroke: " + kColours[i % kColours.size()] +
+               (i < kColours.size() ? "" : "; stroke-dasharray: 5 3") + "; }";
+    }
+    return "<style>" + css + "</style>";
+}
+
+/// The nodes and check points with some room; lines that swing farther are cut at the edge.
+PlotAxes axes(const Comparison& comparison) {
+    auto [low, high] = std::minmax_element(comparison.y.begin(), comparison.y.end());
+    double bottom = *low, top = *high;
+    for (const auto& point : comparison.checks) {
+        bottom = std::min(bottom, point.y());
+        top = std::max(top, point.y());
+    }
+    const double room = top > bottom ? 0.15 * (top - bottom) : 1;
+    return {kWidth,        kHeight,    comparison.x.front(), comparison.x.back(),
+            bottom - room, top + room, comparison.x_name,    comparison.y_name};
+}
+
+std::vector<PlotPoint> samples(const Interpolant& line) {
+    constexpr int kSamples = 40;
+    std::vector<PlotPoint> points;
+    for (std::size_t i = 0; i + 1 < line.t.size(); ++i) {
+        for (int k = 0; k < kSamples; ++k) {
+            const Eigen::Vector2d p = line.at(line.t[i] + (line.t[i + 1] - line.t[i]) * k / kSamples);
+            points.push_back({p.x(), p.y()});
+        }
+    }
+    const Eigen::Vector2d last = line.at(line.t.back());
+    points.push_back({last.x(), last.y()});
+    return points;
+}
+
+std::string legend(const Comparison& comparison) {
+    std::string svg;
+    for (std::size_t i = 0; i < comparison.results.size(); ++i) {
+        const std::string y = decimal(20 + kLine * static_cast<double>(i), 1);
+        svg += "<path class=\"" + line_class(i) + "\" d=\"M" + decimal(kWidth + 8, 1) + ' ' + y + "h24\"/><text x=\"" +
+               decimal(kWidth + 40, 1) + "\" y=\"" + y + "\" dy=\"4\">" + escape_html(comparison.results[i].label) +
+               "</text>";
+    }
+    return svg;
+}
+
+}  // namespace
+
+std::string comparison_svg(const Comparison& comparison) {
+    const PlotAxes frame = axes(comparison);
+    const double height = std::max(kHeight, 20 + kLine * static_cast<double>(comparison.results.size()));
+    std::string plot = svg_axes(frame, "Interpolation of a table by several methods");
+    plot.insert(4, " width=\"" + decimal(kWidth, 0) + "\" height=\"" + decimal(kHeight, 0) + "\"");  // after "<svg"
+    for (std::size_t i = 0; i < comparison.results.size(); ++i) {
+        plot += svg_line(frame, samples(comparison.results[i].line), line_class(i));
+    }
+    std::vector<PlotPoint> nodes, checks;
+    for (std::size_t i = 0; i < comparison.x.size(); ++i) {
+        nodes.push_back({comparison.x[i], comparison.y[i]});
+    }
+    for (const auto& point : comparison.checks) {
+        checks.push_back({point.x(), point.y()});
+    }
+    plot += svg_dots(frame, nodes, 3.5, "node") + svg_dots(frame, checks, 2, "check") + svg_end();
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(kWidth + kLegend, 0) + ' ' +
+           decimal(height, 0) + "\">" + style(comparison) + "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
+           plot + legend(comparison) + svg_end();
+}
+
+}  // namespace seampath
