@@ -24,5 +24,6 @@ Command options_command(CLI::App& program);
 Command dataset_command(CLI::App& program);
 Command interpolate_command(CLI::App& program);
 Command parametrize_command(CLI::App& program);
+Command saddle_command(CLI::App& program);
 
 }  // namespace seampath

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include <Eigen/SparseLU>
-
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
+#include "stages/geometry/tridiagonal.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -36,25 +36,24 @@ Vector3d exact(const SaddleCurve& curve, double station) {
 /// The periodic cubic spline through these points at its knots; knots.back() is one period after the first.
 CubicBSpline interpolate(std::vector<double> knots, const std::vector<Vector3d>& points) {
     const std::size_t n = points.size();
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd right(n, 3);
+    // At knot i the control points i, i + 1 and i + 2 count: the middle one is the unknown of row i.
+    std::vector<double> lower(n), diagonal(n), upper(n), right(n);
     for (std::size_t i = 0; i < n; ++i) {
         const CubicBasis basis = cubic_basis(knots, n, true, knots[i]);
-        for (int k = 0; k < 4; ++k) {
-            entries.emplace_back(static_cast<int>(i), static_cast<int>(basis.control[k]), basis.value[k]);
-        }
-        right.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+        lower[i] = basis.value[0];
+        diagonal[i] = basis.value[1];
+        upper[i] = basis.value[2];
     }
-    Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(matrix);
-    ensure(solver.info() == Eigen::Success, "cubic spline interpolation at the knots has one solution");
-    const Eigen::MatrixXd control = solver.solve(right);
     CubicBSpline curve;
     curve.periodic = true;
     curve.knots = std::move(knots);
-    for (Eigen::Index i = 0; i < control.rows(); ++i) {
-        curve.control.push_back(control.row(i).transpose());
+    curve.control.resize(n);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::transform(points.begin(), points.end(), right.begin(), [axis](const Vector3d& p) { return p[axis]; });
+        const std::vector<double> control = solve_cyclic(lower, diagonal, upper, right);
+        for (std::size_t i = 0; i < n; ++i) {
+            curve.control[(i + 1) % n][axis] = control[i];
+        }
     }
     return curve;
 }
@@ -106,6 +105,31 @@ Fitted fit_exactly(const SaddleCurve& saddle) {
 }
 
 }  // namespace
+
+SaddleCurve saddle_of(const SaddleDimensions& d) {
+    if (!(d.angle > 0 && d.angle < std::numbers::pi)) {
+        throw InputError("saddle: the angle between the branch and the header is " +
+                         shortest(d.angle * 180 / std::numbers::pi) +
+                         " deg; an angle between 0 and 180 deg is needed; 90 is a branch that stands upright");
+    }
+    const Vector3d origin = Vector3d::Zero(), y = Vector3d::UnitY();
+    const Vector3d axis(0, std::cos(d.angle), std::sin(d.angle)), zero(0, std::sin(d.angle), -std::cos(d.angle));
+    const Cylinder branch{{d.offset_mm, 0, 0}, axis, d.branch_radius_mm};
+    const double R = d.header_radius_mm;
+    switch (d.header) {
+        case HeaderKind::plane:
+            return {branch, zero, Plane{origin, Vector3d::UnitZ()}};
+        case HeaderKind::cone:
+            return {branch, zero, Cone{-R / std::tan(d.cone_half_angle) * y, y, d.cone_half_angle}};
+        case HeaderKind::sphere:
+            return {branch, zero, Sphere{origin, R}};
+        case HeaderKind::ellipsoid:
+            return {branch, zero, Ellipsoid{origin, Eigen::Matrix3d::Identity(), {R, R, d.head_depth_mm}}};
+        case HeaderKind::cylinder:
+            break;
+    }
+    return {branch, zero, Cylinder{origin, y, R}};
+}
 
 std::vector<double> step_angles(const SaddleCurve& curve, StepLaw law, double step_mm) {
     ensure(step_mm > 0, "a step has a length");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <string_view>
 #include <vector>
 
@@ -10,6 +11,25 @@
 /// Seams from nominal dimensions instead of a scan. After Xue et al., Interpolation Algorithm and Mathematical Model in
 /// Automated Welding of Saddle-Shaped Weld, 2018; equation numbers are theirs.
 namespace seampath {
+
+enum class HeaderKind { cylinder, plane, cone, sphere, ellipsoid };
+inline constexpr std::array<std::string_view, 5> kHeaderNames{"cylinder", "plane", "cone", "sphere", "ellipsoid"};
+
+/// A branch on a header as a drawing gives it, in the paper's frame: z up, the header's axis along y. The branch's axis
+/// lies in the plane x = offset, meets z = 0 at y = 0 and leaves it at `angle` from +y: along z at 90 deg.
+struct SaddleDimensions {
+    HeaderKind header = HeaderKind::cylinder;
+    double branch_radius_mm = 0;
+    double header_radius_mm = 0;          ///< of the cylinder, the sphere, the ellipsoid about z, the cone at y = 0
+    double head_depth_mm = 0;             ///< semi-axis of the ellipsoid along z
+    double cone_half_angle = 0;           ///< rad; the cone opens towards +y
+    double angle = std::numbers::pi / 2;  ///< rad, between 0 and pi
+    double offset_mm = 0;
+};
+
+/// Branch angle 0 is where the branch faces +y; the plane is z = 0, sphere and ellipsoid are about the origin. Throws
+/// InputError as SaddleCurve does.
+SaddleCurve saddle_of(const SaddleDimensions& dimensions);
 
 /// How the torch goes on from one interpolation point to the next.
 ///   equal_angle     the same branch angle each time (1)-(3); this is what Table 1 of the paper shows

@@ -173,6 +173,7 @@ TEST(Cli, EveryHelpHasThreeWorkedExamples) {
                                                    {"dataset", "make"},
                                                    {"interpolate"},
                                                    {"parametrize"},
+                                                   {"saddle"},
                                                    {}}) {
         auto arguments = command;
         arguments.push_back("--help");

@@ -8,17 +8,19 @@
 #include <variant>
 #include <vector>
 
-#include "stages/geometry/saddle.hpp"
+#include "stages/nominal/nominal.hpp"
 
 /// Saddles of the tests, and an independent solver for them.
 namespace seampath {
 
-/// Two pipes as the paper lays them: header axis y, branch axis in the y-z plane at `angle_deg` to it, moved by
-/// `offset_mm` in x.
+/// Two pipes as the paper lays them.
 inline SaddleCurve pipes(double R, double r, double angle_deg = 90, double offset_mm = 0) {
-    const double angle = angle_deg * std::numbers::pi / 180;
-    const Eigen::Vector3d axis(0, std::cos(angle), std::sin(angle)), zero(0, std::sin(angle), -std::cos(angle));
-    return {{{offset_mm, 0, 0}, axis, r}, zero, Cylinder{{0, 0, 0}, {0, 1, 0}, R}};
+    SaddleDimensions dimensions;
+    dimensions.header_radius_mm = R;
+    dimensions.branch_radius_mm = r;
+    dimensions.angle = angle_deg * std::numbers::pi / 180;
+    dimensions.offset_mm = offset_mm;
+    return saddle_of(dimensions);
 }
 
 struct NamedSaddle {
