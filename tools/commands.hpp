@@ -25,5 +25,6 @@ Command dataset_command(CLI::App& program);
 Command interpolate_command(CLI::App& program);
 Command parametrize_command(CLI::App& program);
 Command saddle_command(CLI::App& program);
+Command mechanism_command(CLI::App& program);
 
 }  // namespace seampath

@@ -174,6 +174,8 @@ TEST(Cli, EveryHelpHasThreeWorkedExamples) {
                                                    {"interpolate"},
                                                    {"parametrize"},
                                                    {"saddle"},
+                                                   {"mechanism"},
+                                                   {"mechanism", "two-tier"},
                                                    {}}) {
         auto arguments = command;
         arguments.push_back("--help");
