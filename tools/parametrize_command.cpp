@@ -110,15 +110,18 @@ Json result_json(const Arguments& given, const Parametrization& result, const Pa
 }
 
 void print(const Arguments& given, const Table& table, const Parametrization& result, const Parametrization& chord) {
-    Rows rows{{"", given.objective, "chord"},
-              {"bending energy, exact (31)", fixed(result.exact_energy, 4), fixed(chord.exact_energy, 4)},
-              {"bending energy, diagonal (34)", fixed(result.diagonal_energy, 4), fixed(chord.diagonal_energy, 4)}};
+    Rows rows{{"", given.objective, "chord"}};
+    const auto add = [&](const std::string& what, double value, double of_chord, int decimals) {
+        rows.push_back({what, fixed(value, decimals), fixed(of_chord, decimals)});
+    };
+    add("bending energy, exact (31)", result.exact_energy, chord.exact_energy, 4);
+    add("bending energy, diagonal (34)", result.diagonal_energy, chord.diagonal_energy, 4);
     for (std::size_t k = 0; k < result.max_acceleration.size(); ++k) {
-        rows.push_back({"largest acceleration, " + coordinate_name(table, k), fixed(result.max_acceleration[k], 3),
-                        fixed(chord.max_acceleration[k], 3)});
+        add("largest acceleration, " + coordinate_name(table, k), result.max_acceleration[k], chord.max_acceleration[k],
+            3);
     }
-    rows.push_back({"largest over its limit", fixed(result.peak, 4), fixed(chord.peak, 4)});
-    rows.push_back({"shortest travel time", fixed(std::sqrt(result.peak), 4), fixed(std::sqrt(chord.peak), 4)});
+    add("largest over its limit", result.peak, chord.peak, 4);
+    add("shortest travel time", std::sqrt(result.peak), std::sqrt(chord.peak), 4);
     std::cout << aligned(rows)
               << "travel time saved against chord length: " << fixed(100 * travel_time_saved(result, chord), 1)
               << " %\n";

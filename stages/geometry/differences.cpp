@@ -133,7 +133,7 @@ Placement choose(const DifferenceTable& table, double x, std::size_t degree) {
     const bool between = u >= 0.25 && u <= 0.75;
     const Placement central = place(table, between ? Formula::bessel : Formula::stirling, x, degree);
     const std::size_t wanted = between || u < 0.5 ? i : i + 1;
-    if (central.origin == wanted && central.formula != Formula::newton_forward) {
+    if (central.origin == wanted && central.degree >= 2) {
         return central;
     }
     return place(table, 2 * i + 1 < n ? Formula::newton_forward : Formula::newton_backward, x, degree);

@@ -16,6 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Values = std::vector<double>;
 
+constexpr double kLargest = 1e100;  // so that no square or cube overflows
+
 struct Input {
     std::span<const double> x, y;
     const InterpolateOptions& options;
@@ -30,8 +32,9 @@ void check(const Input& in) {
                          std::to_string(kMaxDegree) + " was needed");
     }
     for (std::size_t i = 0; i < in.x.size(); ++i) {
-        if (!std::isfinite(in.x[i]) || !std::isfinite(in.y[i])) {
-            throw InputError("interpolate: row " + std::to_string(i + 1) + " is not finite; correct it");
+        if (!(std::abs(in.x[i]) <= kLargest && std::abs(in.y[i]) <= kLargest)) {
+            throw InputError("interpolate: row " + std::to_string(i + 1) +
+                             " is not finite or beyond 1e100; correct it or take another unit");
         }
     }
     if (const auto i = first_not_ascending(in.x)) {

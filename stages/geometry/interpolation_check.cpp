@@ -228,7 +228,7 @@ Shape shape_of(const Interpolant& line, std::span<const double> x, std::span<con
     Shape shape = Walk(line, y).shape();
     find_jump(line, x, shape);
     const auto [low, high] = std::minmax_element(y.begin(), y.end());
-    if (shape.jump <= 1e-6 * (*high - *low)) {
+    if (shape.jump <= 1e-6 * (*high - *low) + 1e-12 * std::max(std::abs(*low), std::abs(*high))) {
         shape.jump = 0;  // within what the differences above leave
     }
     return shape;

@@ -184,7 +184,8 @@ PiecewiseCubic akima_spline(std::span<const double> x, std::span<const double> y
         const double before = std::abs(m[i + 1] - m[i]), after = std::abs(m[i + 3] - m[i + 2]);
         // Akima's 0 / 0: straight on both sides, to rounding.
         const bool undecided = before + after <= 1e-9 * most;
-        slope[i] = undecided ? (m[i + 1] + m[i + 2]) / 2 : (after * m[i + 1] + before * m[i + 2]) / (before + after);
+        const double share = undecided ? 0.5 : after / (before + after);
+        slope[i] = share * m[i + 1] + (1 - share) * m[i + 2];
     }
     return from_slopes(x, y, chord, slope);
 }

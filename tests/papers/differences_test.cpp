@@ -170,6 +170,13 @@ TEST(Differences, ChoosesTheFormulaThatThePaperRecommends) {
     expect(10, Formula::newton_backward, 10, 0, 5);
 }
 
+TEST(Differences, ShortTablesAreServedAtTheirFullDegree) {
+    const DifferenceTable table(Values{0, 1, 2}, Values{0, 1, 4}, 6);
+    for (double at = 0; at <= 2; at += 0.125) {
+        EXPECT_DOUBLE_EQ(value(table, choose(table, at, 5)), at * at);
+    }
+}
+
 TEST(Differences, UnequalStepsAreAnErrorThatNamesTheRows) {
     try {
         const DifferenceTable table(Values{0, 1, 2, 3.5, 4}, Values{0, 0, 0, 0, 0}, 5);

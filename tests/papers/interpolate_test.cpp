@@ -234,6 +234,18 @@ TEST(Interpolate, SteepDataMayBringAParametricLineToRunBack) {
     EXPECT_FALSE(shape_of(interpolate(Method::natural, x, y, {}), x, y).runs_back);
 }
 
+TEST(Interpolate, LevelDataGiveALevelLine) {
+    const Values x{0, 1, 2, 3}, y{5, 5, 5, 5};
+    for (std::size_t m = 0; m < kMethodNames.size(); ++m) {
+        const Interpolant line = interpolate(static_cast<Method>(m), x, y, {});
+        EXPECT_NEAR(line.value(1.3), 5, 1e-14) << kMethodNames[m];
+        const Shape shape = shape_of(line, x, y);
+        EXPECT_EQ(shape.turns, 0) << kMethodNames[m];
+        EXPECT_EQ(shape.overshoot, 0) << kMethodNames[m];
+        EXPECT_EQ(shape.jump, 0) << kMethodNames[m];
+    }
+}
+
 TEST(Interpolate, SaysWhatIsWrongWithTheTable) {
     const auto message = [](Method method, const Values& x, const Values& y, const InterpolateOptions& options = {}) {
         try {
@@ -248,6 +260,7 @@ TEST(Interpolate, SaysWhatIsWrongWithTheTable) {
                 HasSubstr("row 3 has x = 2 after x = 2; x must ascend"));
     EXPECT_THAT(message(Method::natural, {1, 2, 0}, {1, 1, 1}), HasSubstr("row 3 has x = 0 after x = 2"));
     EXPECT_THAT(message(Method::natural, {1, NAN}, {1, 1}), HasSubstr("row 2 is not finite"));
+    EXPECT_THAT(message(Method::natural, {1, 2}, {1, 1e101}), HasSubstr("row 2 is not finite or beyond 1e100"));
     EXPECT_THAT(message(Method::natural, {1, 2}, {1, 1}), HasSubstr("x = 0 lies outside the table, which goes from 1"));
     EXPECT_THAT(message(Method::parametric, {1, 2}, {1, 1}), HasSubstr("x = 0 lies outside the table"));
     EXPECT_THAT(message(Method::stirling, {1, 2, 4}, {1, 1, 1}), HasSubstr("need equal steps"));

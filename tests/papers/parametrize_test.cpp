@@ -326,8 +326,8 @@ TEST(Parametrize, SaysWhatIsWrongWithTheInput) {
     ParametrizeOptions options;
     EXPECT_THAT(message({good[0]}, options), HasSubstr("1 points; at least 2"));
     EXPECT_THAT(message({good[0], good[1], good[1], good[2]}, options), HasSubstr("rows 2 and 3 are the same point"));
-    EXPECT_THAT(message({good[0], VectorXd::Ones(3)}, options), HasSubstr("row 2 is not finite or differs"));
-    EXPECT_THAT(message({good[0], VectorXd::Constant(2, NAN)}, options), HasSubstr("row 2 is not finite or differs"));
+    EXPECT_THAT(message({good[0], VectorXd::Ones(3)}, options), HasSubstr("row 2 is not finite, beyond"));
+    EXPECT_THAT(message({good[0], VectorXd::Constant(2, NAN)}, options), HasSubstr("row 2 is not finite, beyond"));
     EXPECT_THAT(message(as_points({2e9, 1, 1 - 1e-12}), options), HasSubstr("rows 2 and 3 are too close"));
     options.weights = {1, 2, 3};
     EXPECT_THAT(message(good, options), HasSubstr("3 weights for points of 2 coordinates"));
