@@ -106,6 +106,9 @@ double lowest(const Function& f) {
 SaddleCurve::SaddleCurve(Cylinder branch, const Vector3d& zero, const Header& header)
     : branch_(std::move(branch)), header_(std::visit([](const auto& s) { return quadric(checked(s)); }, header)) {
     require_size(branch_.radius, "the branch's radius, mm,");
+    if (!branch_.point.allFinite() || !header_.origin.allFinite()) {
+        throw InputError("saddle: a position of the branch or the header is not finite; finite coordinates are needed");
+    }
     branch_.axis = unit(branch_.axis, "the branch's axis");
     e1_ = unit(across(zero, branch_.axis), "the direction of branch angle 0, square to the branch's axis,");
     e2_ = e1_.cross(branch_.axis);
@@ -173,11 +176,12 @@ void SaddleCurve::check_has_no_corner() const {
     };
     const double touch = lowest(crossing_cosine);
     if (!(crossing_cosine(touch) >= kLeastCrossing)) {
-        throw InputError(
-            "saddle: at branch angle " + degrees(touch) +
-            " the branch's wall only touches the header: the curve has a corner there and meets the one on "
-            "the header's other side (as for equal radii at right angles without offset); a branch that "
-            "is smaller, or further in, is needed");
+        throw InputError("saddle: at branch angle " + degrees(touch) +
+                         " the branch's wall only touches the header or runs along it (the cosine between branch axis "
+                         "and header normal is " +
+                         shortest(crossing_cosine(touch)) + "; at least " + shortest(kLeastCrossing) +
+                         " is needed): the curve has a corner there, as for equal radii without offset; a branch that "
+                         "is smaller, further in or steeper is needed");
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 
 #include "stages/error.hpp"
@@ -38,22 +39,17 @@ public:
         }
         half_width_ = 2 * widest + longest;
         index_of(greedy.front());
-        for (std::size_t k = 0; k < places_.size(); ++k) {
+        std::size_t k = 0;
+        while (k < places_.size()) {  // which grows
             if (!same_place(places_[k].node, goal_)) {
-                std::vector<std::size_t> next;
-                segment.for_nearer_neighbours(places_[k].node, neighbours, [&](GridNode n, const Vector2d& p, double) {
-                    if (segment.distance_from_line(p) <= half_width_) {
-                        next.push_back(index_of(n));
-                    }
-                });
+                std::vector<std::size_t> next = reached_from(places_[k].node, neighbours);
                 places_[k].next = std::move(next);
             }
+            ++k;
         }
         places_.front().square = 0;
         order_.resize(places_.size());
-        for (std::size_t k = 0; k < order_.size(); ++k) {
-            order_[k] = k;
-        }
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
         std::sort(order_.begin(), order_.end(), [this](std::size_t a, std::size_t b) {
             return places_[a].to_end != places_[b].to_end ? places_[a].to_end < places_[b].to_end : a < b;
         });
@@ -87,6 +83,16 @@ public:
     }
 
 private:
+    std::vector<std::size_t> reached_from(GridNode node, Neighbours neighbours) {
+        std::vector<std::size_t> next;
+        segment_.for_nearer_neighbours(node, neighbours, [&](GridNode n, const Vector2d& p, double) {
+            if (segment_.distance_from_line(p) <= half_width_) {
+                next.push_back(index_of(n));
+            }
+        });
+        return next;
+    }
+
     std::size_t index_of(GridNode node) {
         const auto key = static_cast<std::int64_t>(node.j) * segment_.grid().alpha_steps + (node.j == 0 ? 0 : node.i);
         const auto [found, is_new] = index_.emplace(key, places_.size());

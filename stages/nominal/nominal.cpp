@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -25,6 +26,9 @@ constexpr double kLastStep = 1e-9;
 constexpr std::size_t kFirstKnots = 64, kMostKnots = 200000;
 constexpr int kChecks = 4;
 constexpr double kModelTolerance_mm = 1e-7;
+
+// What coordinates lose to rounding, as a share of the largest: it counts on headers of 10 km and more.
+constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
 // Flank samples a span; they are interpolated linearly in between.
 constexpr int kFlanksPerSpan = 8;
@@ -69,6 +73,11 @@ std::pair<Fitted, std::vector<double>> fit_once(const SaddleCurve& saddle, const
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
         points.push_back(exact(saddle, knots[i]));
     }
+    double extent = 0;
+    for (const Vector3d& p : points) {
+        extent = std::max(extent, p.cwiseAbs().maxCoeff());
+    }
+    const double tolerance = std::max(kModelTolerance_mm, kRounding * extent);
     Fitted fitted{interpolate(knots, points)};
     std::vector<double> more;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
@@ -80,7 +89,7 @@ std::pair<Fitted, std::vector<double>> fit_once(const SaddleCurve& saddle, const
             fitted.rms_mm += off * off;
         }
         fitted.max_mm = std::max(fitted.max_mm, worst);
-        if (worst > kModelTolerance_mm) {
+        if (worst > tolerance) {
             more.push_back(0.5 * (knots[i] + knots[i + 1]));
         }
     }

@@ -62,9 +62,9 @@ StepErrors step_errors(const SaddleCurve& curve, const std::vector<double>& angl
 double torch_angle(const SaddlePoint& point, PoseLaw law, double initial);
 
 /// The saddle as the model that planning takes: a periodic cubic spline through exact points, by arc length, with knots
-/// added until it is within 1e-7 mm of the curve. `residual_*` are the distances found from exact points between the
-/// knots. The flanks are the walls' normals, turned about travel where the law asks for another torch than their
-/// bisector. `initial` as for torch_angle().
+/// added until it is within 1e-7 mm of the curve (or of rounding). `residual_*` are the distances found from exact
+/// points between the knots. The flanks are the walls' normals, turned about travel where the law asks for another
+/// torch than their bisector. `initial` as for torch_angle().
 SeamModel nominal_model(const SaddleCurve& curve, PoseLaw law, double initial);
 
 }  // namespace seampath

@@ -133,7 +133,7 @@ TEST(SaddleCli, EveryHeaderGivesPrograms) {
 TEST(SaddleCli, SaysWhatCannotBeAndLeavesNothing) {
     const std::vector<std::pair<Words, std::string>> cases{
         {{"--header-radius-mm", "150", "--branch-radius-mm", "160"}, "partial penetration"},
-        {{"--header-radius-mm", "150", "--branch-radius-mm", "150"}, "the curve has a corner there"},
+        {{"--header-radius-mm", "150", "--branch-radius-mm", "150"}, "only touches the header"},
         {paper_and({"--angle-deg", "180"}), "is 180 deg; an angle between 0 and 180 deg is needed"},
         {paper_and({"--header", "plane"}), "--header-radius-mm: the header \"plane\" has no such size"},
         {{"--branch-radius-mm", "150"}, "--header-radius-mm: the header \"cylinder\" needs it"},

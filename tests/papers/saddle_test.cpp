@@ -239,6 +239,7 @@ TEST(Saddle, RefusesWhatHasNoSeamAllRoundAndSaysWhy) {
     EXPECT_THAT(refusal(300, 100, 90, -200), HasSubstr("at branch angle 270.00 deg"));
     EXPECT_THAT(refusal(300, 0, 90, 0), HasSubstr("the branch's radius, mm, is 0"));
     EXPECT_THAT(refusal(std::nan(""), 100, 90, 0), HasSubstr("the header's radius, mm, is nan"));
+    EXPECT_THAT(refusal(300, 100, 90, std::nan("")), HasSubstr("is not finite"));
     EXPECT_EQ(refusal(150, 149.99999, 90, 0), "accepted");
 }
 
@@ -248,6 +249,12 @@ TEST(Saddle, RefusesAnAxisThatPointsIntoThePlateAndAConeLeftBeyondItsApex) {
     const Cone cone{{0, 0, 100}, {0, 0, -1}, 0.3};
     EXPECT_THROW(SaddleCurve({{0, 0, 0}, {0, 0, -1}, 20}, Vector3d::UnitX(), cone), InputError);
     EXPECT_NEAR(SaddleCurve({{0, 0, 0}, {0, 0, 1}, 20}, Vector3d::UnitX(), cone).length(), 40 * kPi, 1e-10);
+}
+
+TEST(Nominal, FarFromTheOriginTheModelIsAsGoodAsItsCoordinates) {
+    const SaddleCurve curve = pipes(1e9, 5);
+    EXPECT_LT(nominal_model(curve, PoseLaw::bisector, 0).residual_max_mm, 2e-5);
+    EXPECT_NEAR(curve.length(), 10 * kPi, 1e-6);
 }
 
 TEST(Nominal, StepsOfOddLengthsEndAtAFullTurn) {
