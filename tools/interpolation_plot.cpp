@@ -26,8 +26,9 @@ std::string style(const Comparison& comparison) {
         ".middle { text-anchor: middle; } .end { text-anchor: end; } path { fill: none; stroke-width: 1.4; } "
         ".node { fill: #fff; stroke: #1c2530; } .check { fill: #1c2530; }";
     for (std::size_t i = 0; i < comparison.results.size(); ++i) {
-        css += " ." + line_class(i) + " { stroke: " + kColours[i % kColours.size()] +
-               (i < kColours.size() ? "" : "; stroke-dasharray: 5 3") + "; }";
+        const char* dashes = i < kColours.size() ? "" : "; stroke-dasharray: 5 3";
+        css.append(" .").append(line_class(i)).append(" { stroke: ").append(kColours[i % kColours.size()]);
+        css.append(dashes).append("; }");
     }
     return "<style>" + css + "</style>";
 }
@@ -63,9 +64,9 @@ std::string legend(const Comparison& comparison) {
     std::string svg;
     for (std::size_t i = 0; i < comparison.results.size(); ++i) {
         const std::string y = decimal(20 + kLine * static_cast<double>(i), 1);
-        svg += "<path class=\"" + line_class(i) + "\" d=\"M" + decimal(kWidth + 8, 1) + ' ' + y + "h24\"/><text x=\"" +
-               decimal(kWidth + 40, 1) + "\" y=\"" + y + "\" dy=\"4\">" + escape_html(comparison.results[i].label) +
-               "</text>";
+        svg.append("<path class=\"").append(line_class(i)).append("\" d=\"M").append(decimal(kWidth + 8, 1));
+        svg.append(" ").append(y).append("h24\"/><text x=\"").append(decimal(kWidth + 40, 1)).append("\" y=\"");
+        svg.append(y).append("\" dy=\"4\">").append(escape_html(comparison.results[i].label)).append("</text>");
     }
     return svg;
 }

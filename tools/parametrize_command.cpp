@@ -56,7 +56,7 @@ ParametrizeOptions options_of(const Arguments& given) {
 std::vector<Eigen::VectorXd> points_of(const Table& table, const std::string& file) {
     std::vector<Eigen::VectorXd> points;
     for (const auto& row : table.rows) {
-        points.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
+        points.emplace_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
     }
     if (const auto i = first_repeated(points)) {
         throw InputError("parametrize: " + file + ": rows " + std::to_string(*i + 1) + " and " +

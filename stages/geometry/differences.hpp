@@ -57,8 +57,8 @@ struct Placement {
 Placement place(const DifferenceTable& table, Formula formula, double x, std::size_t degree);
 
 /// The formula that section VI recommends for x: in central intervals Stirling's for U up to 0.25 from either node and
-/// Bessel's between, where they have all their differences and a degree of 2 at least; else Newton I in the upper half of the table and Newton II
-/// in the lower.
+/// Bessel's between, where they have all their differences and a degree of 2 at least; else Newton I in the upper half
+/// of the table and Newton II in the lower.
 Placement choose(const DifferenceTable& table, double x, std::size_t degree);
 
 /// The polynomial by (9), (11), (12) or (13). The last term of (13) is over (2n+1)!, with Delta^{2n+1} y_{-n}.

@@ -51,7 +51,7 @@ void check_inside(double x, double first, double last) {
 }
 
 /// A function of x as an interpolant.
-Interpolant graph(Values x, std::function<Evaluation(double)> f) {
+Interpolant graph(Values x, const std::function<Evaluation(double)>& f) {
     Interpolant line;
     const double first = x.front(), last = x.back();
     line.evaluate = [f, first, last](double at) {

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <random>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -26,7 +26,7 @@ inline std::vector<double> paper_column(const std::string& name, std::size_t col
 inline std::vector<Eigen::VectorXd> paper_points(const std::string& name) {
     std::vector<Eigen::VectorXd> points;
     for (const auto& row : read_table(paper_file(name)).rows) {
-        points.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
+        points.emplace_back(Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size())));
     }
     return points;
 }
@@ -34,8 +34,9 @@ inline std::vector<Eigen::VectorXd> paper_points(const std::string& name) {
 /// Ordinates as points of one dimension.
 inline std::vector<Eigen::VectorXd> as_points(const std::vector<double>& values) {
     std::vector<Eigen::VectorXd> points;
+    points.reserve(values.size());
     for (const double value : values) {
-        points.push_back(Eigen::VectorXd::Constant(1, value));
+        points.emplace_back(Eigen::VectorXd::Constant(1, value));
     }
     return points;
 }

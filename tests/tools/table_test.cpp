@@ -43,8 +43,7 @@ TEST_F(TableFile, ReadsHeaderRowsAndTheirLines) {
 
 TEST_F(TableFile, TakesTheSeparatorOfTheFirstRow) {
     for (const auto* text : {"1,2,3\n4,5,6", "1;2;3\n4; 5 ;6\n", "1\t2\t3\n4\t5\t6\n", " 1  2 3 \n4 5   6\n",
-                             "\xEF\xBB\xBF"
-                             "1 2 3\n4 5 6\n"}) {
+                             "\xEF\xBB\xBF 1 2 3\n4 5 6\n"}) {
         const Table table = read(text);
         EXPECT_THAT(table.header, ElementsAre()) << text;
         EXPECT_THAT(table.rows, ElementsAre(ElementsAre(1, 2, 3), ElementsAre(4, 5, 6))) << text;
