@@ -102,7 +102,7 @@ ViewSeam view_seam(const PartResult& part, std::size_t i, const ViewScene& scene
         view.samples.back().station_mm = part.models[i].length_mm;
     }
     for (const std::size_t node : part.nodes[i].index) {
-        view.nodes.push_back(seam.points[node].p - scene.centre);
+        view.nodes.emplace_back(seam.points[node].p - scene.centre);
     }
     view.tolerance_mm = deviation.tolerance_mm;
     view.camera = best_camera({&seam, 1}, part.scan, scene);

@@ -26,6 +26,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+constexpr const char* kPointsFile = "saddle_points.csv";
+constexpr const char* kFactsFile = "saddle.json";
+
 /// Places at which the range of opening and curvature is looked for: every 0.05 deg.
 constexpr int kLooks = 7200;
 
@@ -166,12 +169,29 @@ Range range(const SaddleCurve& curve, const Number& number) {
     return r;
 }
 
+/// The dimensions that were given, and no others.
+Json dimensions_json(const Arguments& given) {
+    Json json{{"header", given.header}, {"branch_radius_mm", given.branch_radius_mm}};
+    const auto add = [&json](const char* key, const std::optional<double>& value) {
+        if (value) {
+            json[key] = *value;
+        }
+    };
+    add("header_radius_mm", given.header_radius_mm);
+    add("head_depth_mm", given.head_depth_mm);
+    add("cone_half_angle_deg", given.cone_half_angle_deg);
+    add("angle_deg", given.angle_deg);
+    add("offset_mm", given.offset_mm);
+    return json;
+}
+
 /// What is known of the saddle, its steps and its model.
-Json facts_of(const SaddleCurve& curve, const Interpolation& i, const PartResult& part) {
+Json facts_of(const Arguments& given, const SaddleCurve& curve, const Interpolation& i, const PartResult& part) {
     const Range opening = range(curve, [](const SaddlePoint& s) { return s.opening / kDegree; });
     const Range bend = range(curve, [](const SaddlePoint& s) { return s.curvature_per_mm; });
     const StepErrors errors = step_errors(curve, i.angles, i.step_mm);
-    return {{"length_mm", curve.length()},
+    return {{"dimensions", dimensions_json(given)},
+            {"length_mm", curve.length()},
             {"opening_least_deg", opening.low},
             {"opening_most_deg", opening.high},
             {"curvature_least_per_mm", bend.low},
@@ -211,7 +231,7 @@ void print(const Json& facts, const fs::path& out) {
         {"curve", facts.at("curve_control_points").dump() + " control points, within " + brief("curve_error_mm") +
                       " mm of the exact seam"},
         {"torch path", facts.at("waypoints").dump() + " waypoints, " + number("duration_s", 1) + " s"},
-        {"points", (out / "saddle_points.csv").string()},
+        {"points", (out / kPointsFile).string()},
         {"report", (out / "report.html").string()},
         {"programs", (out / "programs").string()}});
 }
@@ -221,14 +241,17 @@ int saddle(const Arguments& given) {
     const Config config = config_of(given);
     const SaddleCurve curve = saddle_of(dimensions_of(given));
     const Interpolation points = interpolate(curve, given, config.plan.speed_mm_s);
+    for (const auto* earlier : {kPointsFile, kFactsFile}) {
+        RunFolder(given.out).remove(earlier);
+    }
     ProgressLine line("");
     const PartResult part =
         run_nominal("saddle", {nominal_model(curve, points.pose, points.initial)}, given.out, config, line.progress());
-    const Json facts = facts_of(curve, points, part);
+    const Json facts = facts_of(given, curve, points, part);
     const std::string text = facts.dump(4) + "\n";
     const RunFolder folder(given.out);
-    folder.write("saddle_points.csv", points_csv(curve, points));
-    folder.write("saddle.json", text);
+    folder.write(kPointsFile, points_csv(curve, points));
+    folder.write(kFactsFile, text);
     if (given.json) {
         std::cout << text;
     } else {
@@ -237,23 +260,26 @@ int saddle(const Arguments& given) {
     return kPass;
 }
 
+void add_dimensions(CLI::App& app, Arguments& given) {
+    app.add_option("--branch-radius-mm", given.branch_radius_mm, "outer radius of the branch, mm")->required();
+    app.add_option("--header-radius-mm", given.header_radius_mm,
+                   "outer radius of the header, mm; of a cone where the branch's axis crosses its axis");
+    app.add_option("--header", given.header, "shape of the header: " + join(kHeaderNames))->capture_default_str();
+    app.add_option("--angle-deg", given.angle_deg, "angle between both axes, or between the branch and the plane")
+        ->capture_default_str();
+    app.add_option("--offset-mm", given.offset_mm, "distance by which the branch's axis passes the header's, mm")
+        ->capture_default_str();
+    app.add_option("--cone-half-angle-deg", given.cone_half_angle_deg, "half the cone's opening angle");
+    app.add_option("--head-depth-mm", given.head_depth_mm, "depth of an ellipsoidal head, mm; half its radius for 2:1");
+}
+
 }  // namespace
 
 Command saddle_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "saddle", "the seam of a round branch on a header, from nominal dimensions instead of a scan (Xue et al.)");
     const auto given = std::make_shared<Arguments>();
-    app->add_option("--branch-radius-mm", given->branch_radius_mm, "outer radius of the branch, mm")->required();
-    app->add_option("--header-radius-mm", given->header_radius_mm,
-                    "outer radius of the header, mm; of a cone where the branch's axis crosses its axis");
-    app->add_option("--header", given->header, "shape of the header: " + join(kHeaderNames))->capture_default_str();
-    app->add_option("--angle-deg", given->angle_deg, "angle between both axes, or between the branch and the plane")
-        ->capture_default_str();
-    app->add_option("--offset-mm", given->offset_mm, "distance by which the branch's axis passes the header's, mm")
-        ->capture_default_str();
-    app->add_option("--cone-half-angle-deg", given->cone_half_angle_deg, "half the cone's opening angle");
-    app->add_option("--head-depth-mm", given->head_depth_mm,
-                    "depth of an ellipsoidal head, mm; half its radius for 2:1");
+    add_dimensions(*app, *given);
     app->add_option("--step", given->step, "law of the interpolation steps: " + join(kStepLawNames))
         ->capture_default_str();
     app->add_option("--steps", given->steps, "interpolation steps once round, where no period is given")
