@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "pipeline/report.hpp"
 #include "pipeline/report_assets.hpp"
@@ -55,8 +56,8 @@ std::string key_figures(const Report& report) {
         return html + "</section>\n";
     }
     for (const std::string_view name : {"length_mm", "modelled_length_mm", "deviation_rms_mm", "deviation_max_mm",
-                                        "coverage_percent", "duration_s", "programs"}) {
-        html += key_figure(report.rows, "rows", name);
+                                        "coverage_percent", "curve_error_max_mm", "duration_s", "programs"}) {
+        html += has_row(report.rows, name) ? key_figure(report.rows, "rows", name) : "";
     }
     return html + "</section>\n";
 }
@@ -69,15 +70,18 @@ std::string legend(const ViewScene& scene) {
     const auto item = [](const std::string& paint, const std::string& text) {
         return "<div class=\"item\"><i style=\"background:" + paint + "\"></i>" + text + "</div>";
     };
+    const std::string unchecked =
+        "repeating-linear-gradient(90deg, " + std::string(kUncheckedColour) + " 0 6px, transparent 6px 9px)";
+    if (scene.nominal) {
+        return "<div id=\"legend\" class=\"overlay\">" + item(unchecked, "nominal, not checked against a scan") +
+               "</div>";
+    }
     return "<div id=\"legend\" class=\"overlay\"><span class=\"title\">Deviation from the scan</span><div "
            "class=\"bar\" "
            "style=\"background:linear-gradient(90deg" +
            stops + ")\"></div><div class=\"ends\"><span>0</span><span>" + decimal(scene.scale_mm / 2, 3) +
            "</span><span>" + decimal(scene.scale_mm, 3) + " mm</span></div>" +
-           item(kOutOfToleranceColour, "out of tolerance") +
-           item("repeating-linear-gradient(90deg, " + std::string(kUncheckedColour) + " 0 6px, transparent 6px 9px)",
-                "bridged or not checked") +
-           "</div>";
+           item(kOutOfToleranceColour, "out of tolerance") + item(unchecked, "bridged or not checked") + "</div>";
 }
 
 std::string axes_overlay() {
@@ -91,13 +95,14 @@ std::string axes_overlay() {
     return svg + "</svg>";
 }
 
-std::string toolbar(bool seams) {
+std::string toolbar(const ViewScene& scene) {
     const auto layer = [](const std::string& key, const std::string& label) {
         return "<label><input type=\"checkbox\" data-layer=\"" + key + "\" checked> " + label + "</label>";
     };
-    std::string html = "<div class=\"toolbar\">" + layer("scan", "Scan");
+    const bool seams = !scene.seams.empty();
+    std::string html = "<div class=\"toolbar\">" + (scene.nominal ? std::string() : layer("scan", "Scan"));
     if (seams) {
-        html += layer("seam", "Seams") + layer("nodes", "Nodes") + layer("torch", "Torch");
+        html += layer("seam", "Seams") + (scene.nominal ? "" : layer("nodes", "Nodes")) + layer("torch", "Torch");
     }
     return html +
            "<button type=\"button\" id=\"fit\">Fit view</button><span id=\"view-note\">Drag turns, Shift or right "
@@ -111,19 +116,36 @@ std::string view_section(const ViewScene& scene) {
     return "<section><div id=\"view\">" + view_svg(scene) + axes_overlay() + (seams ? legend(scene) : "") +
            "<div id=\"scale-bar\" class=\"overlay live-only\"></div><div id=\"tip\" class=\"overlay\" "
            "hidden></div></div>" +
-           toolbar(seams) +
+           toolbar(scene) +
            "<noscript><p class=\"note-line\">Scripts are off: this is a still picture.</p></noscript></section>\n";
 }
+
+/// A column of the table of seams: the row that it shows and its heading.
+struct Column {
+    std::string_view row;
+    const char* heading;
+};
+constexpr std::array<Column, 13> kSeamColumns{{{"length_mm", "Length<br>mm"},
+                                               {"modelled_length_mm", "Bridged<br>mm"},
+                                               {"points", "Points"},
+                                               {"nodes", "Nodes"},
+                                               {"sigma_median_mm", "Point 1σ<br>median mm"},
+                                               {"deviation_rms_mm", "Deviation<br>rms mm"},
+                                               {"deviation_p95_mm", "p95<br>mm"},
+                                               {"deviation_p997_mm", "p99.7<br>mm"},
+                                               {"deviation_max_mm", "Largest<br>mm"},
+                                               {"tolerance_mm", "Tolerance<br>mm"},
+                                               {"coverage_percent", "Checked<br>%"},
+                                               {"control_points", "Control<br>points"},
+                                               {"curve_error_max_mm", "Curve from exact<br>seam, mm"}}};
 
 std::string seam_table(const Report& report) {
     if (report.seams.empty()) {
         return "";
     }
     std::string html = "<h2>Seams</h2><div class=\"scroll\"><table><thead><tr><th>Seam</th><th>Joint</th>";
-    for (const char* text :
-         {"Length<br>mm", "Bridged<br>mm", "Points", "Nodes", "Point 1σ<br>median mm", "Deviation<br>rms mm",
-          "p95<br>mm", "p99.7<br>mm", "Largest<br>mm", "Tolerance<br>mm", "Checked<br>%"}) {
-        html += heading(text, true);
+    for (const Column& column : kSeamColumns) {
+        html += has_row(report.seams.front().rows, column.row) ? heading(column.heading, true) : "";
     }
     html += "<th>Verdict</th></tr></thead><tbody>";
     for (std::size_t i = 0; i < report.seams.size(); ++i) {
@@ -134,10 +156,8 @@ std::string seam_table(const Report& report) {
         html += "<tr data-seam=\"" + std::to_string(i) + "\"><td class=\"link\">Seam " + std::to_string(i) +
                 "</td><td" + value_attributes(kind, path) + '>' + escape_html(shown(kind)) +
                 (closed ? ", closed" : ", open") + "</td>";
-        for (const std::string_view name :
-             {"length_mm", "modelled_length_mm", "points", "nodes", "sigma_median_mm", "deviation_rms_mm",
-              "deviation_p95_mm", "deviation_p997_mm", "deviation_max_mm", "tolerance_mm", "coverage_percent"}) {
-            html += cell(seam.rows, path, name);
+        for (const Column& column : kSeamColumns) {
+            html += has_row(seam.rows, column.row) ? cell(seam.rows, path, column.row) : "";
         }
         html += "<td>" + badge(seam.pass) + "</td></tr>";
     }
@@ -192,8 +212,10 @@ std::string scan_section(const Report& report) {
     std::string html = "<h2>Torch path</h2>" +
                        facts(report.rows, "rows",
                              {"seams", "seams_in_tolerance", "length_mm", "modelled_length_mm", "deviation_rms_mm",
-                              "deviation_max_mm", "coverage_percent"}) +
-                       "<h2>Scan</h2>" + facts(report.scan, "scan");
+                              "deviation_max_mm", "coverage_percent", "curve_error_max_mm"});
+    if (!report.scan.empty()) {
+        html += "<h2>Scan</h2>" + facts(report.scan, "scan");
+    }
     if (!report.remarks.empty()) {
         html += "<h2>Remarks</h2><ul>";
         for (const std::string& remark : report.remarks) {
@@ -256,10 +278,11 @@ std::string report_html(const PartResult& part) {
         html += seam_section(part, report, i);
     }
     html += program_table(report) + scan_section(report) + settings_table(report) + stage_table(report);
-    html +=
-        "<footer>Lengths in mm, positions in the frame of the scan. Seams are numbered from 0 as in the files beside "
-        "this page; "
-        "the unrounded numbers are in report.json.</footer></main>\n";
+    html += "<footer>Lengths in mm, positions in the frame of the " +
+            std::string(part.nominal ? "nominal dimensions" : "scan") +
+            ". Seams are numbered from 0 as in the files beside "
+            "this page; "
+            "the unrounded numbers are in report.json.</footer></main>\n";
     html += data_script("report", report_json(part)) + data_script("scene", view_json(scene));
     html += "<script type=\"text/plain\" id=\"three\">" + base64(three_gzip()) + "</script>\n<script>" +
             std::string(viewer_script()) + "</script>\n</body></html>\n";

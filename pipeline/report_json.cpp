@@ -53,11 +53,15 @@ std::string report_json(const PartResult& part) {
     for (const ReportProgram& program : report.programs) {
         programs.push_back({{"robot", program.robot}, {"file", program.file}, {"rows", rows_json(program.rows)}});
     }
+    Json scan;  // null for a nominal part
+    if (!part.nominal) {
+        scan = {{"rows", rows_json(report.scan)}, {"remarks", report.remarks}};
+    }
     const Json json{{"part", report.part},
                     {"verdict", verdict_json(report.pass)},
                     {"sentence", report.sentence},
                     {"rows", rows_json(report.rows)},
-                    {"scan", {{"rows", rows_json(report.scan)}, {"remarks", report.remarks}}},
+                    {"scan", std::move(scan)},
                     {"seams", seams_json(report.seams)},
                     {"programs", std::move(programs)},
                     {"stages", stages_json(report.timings)}};

@@ -130,7 +130,15 @@ std::string histogram(const Deviation& deviation) {
     return figure("", "<b>How often which deviation</b>", svg + svg_end());
 }
 
-std::string curvature_plot(const SeamModel& model, const Seam& seam, const Nodes& nodes) {
+std::vector<Eigen::Vector3d> node_positions(const Seam& seam, const Nodes& nodes) {
+    std::vector<Eigen::Vector3d> positions;
+    for (const std::size_t node : nodes.index) {
+        positions.push_back(seam.points[node].p);
+    }
+    return positions;
+}
+
+std::string curvature_plot(const SeamModel& model, const std::vector<Eigen::Vector3d>& nodes) {
     const ArcLength arc(model.curve);
     std::vector<PlotPoint> line, dots;
     double most = 0;
@@ -139,15 +147,15 @@ std::string curvature_plot(const SeamModel& model, const Seam& seam, const Nodes
         line.push_back({station, curvature(model.curve, arc.parameter(station))});
         most = std::max(most, line.back().y);
     }
-    for (const std::size_t node : nodes.index) {
-        const double u = nearest_parameter(model.curve, seam.points[node].p);
+    for (const Eigen::Vector3d& node : nodes) {
+        const double u = nearest_parameter(model.curve, node);
         dots.push_back({arc.station(u), curvature(model.curve, u)});
     }
     const PlotAxes axes{kNarrow,       kNarrowHeight,    0, arc.length(), 0, padded(most, kLeastCurvature),
                         "station, mm", "curvature, 1/mm"};
-    return figure("", "<b>Curvature</b> and the nodes that carry the shape",
-                  svg_axes(axes, "Curvature of the seam with its nodes") + svg_line(axes, line, "value") +
-                      svg_dots(axes, dots, 3, "node") + svg_end());
+    return figure("", nodes.empty() ? "<b>Curvature</b>" : "<b>Curvature</b> and the nodes that carry the shape",
+                  svg_axes(axes, nodes.empty() ? "Curvature of the seam" : "Curvature of the seam with its nodes") +
+                      svg_line(axes, line, "value") + svg_dots(axes, dots, 3, "node") + svg_end());
 }
 
 /// Speed between neighbouring weld poses; empty when no torch path was planned for the seam.
@@ -196,8 +204,12 @@ std::string speed_plot(const PartResult& part, std::size_t seam) {
 
 std::string seam_plots(const PartResult& part, std::size_t seam) {
     const SeamModel& model = part.models[seam];
+    if (part.nominal) {
+        return "<div class=\"plots\">\n" + curvature_plot(model, {}) + speed_plot(part, seam) + "</div>\n";
+    }
     return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], std::max(model.length_mm, 1e-3)) +
-           histogram(part.deviations[seam]) + curvature_plot(model, part.extraction.seams[seam], part.nodes[seam]) +
+           histogram(part.deviations[seam]) +
+           curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) +
            speed_plot(part, seam) + "</div>\n";
 }
 

@@ -10,7 +10,6 @@
 #include "pipeline/report_text.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
-#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -80,12 +79,36 @@ double max_sigma(const Seam& seam) {
     return most;
 }
 
+ReportRow planned_row(const PartResult& part, std::size_t i) {
+    const auto& seams = part.planned_seams;
+    const bool planned = std::find(seams.begin(), seams.end(), static_cast<int>(i)) != seams.end();
+    return {"planned", "Torch path planned", planned, "", "", 0};
+}
+
+ReportRow curvature_row(const SeamModel& model) {
+    return number("max_curvature_per_mm", "Largest curvature", max_curvature(model.curve), "1/mm", 4);
+}
+
+ReportSeam nominal_report(const PartResult& part, std::size_t i) {
+    const SeamModel& model = part.models[i];
+    return {true,
+            "computed from nominal dimensions; there is no scan to hold it against",
+            {
+                fact("kind", "Joint", name(model.kind)),
+                {"closed", "Closed", model.closed, "", "", 0},
+                number("length_mm", "Length", model.length_mm, "mm"),
+                count("control_points", "Control points of the curve", model.curve.control.size()),
+                number("curve_error_rms_mm", "Curve from the exact seam, rms", model.residual_rms_mm, "mm", 9),
+                number("curve_error_max_mm", "Curve from the exact seam, largest", model.residual_max_mm, "mm", 9),
+                curvature_row(model),
+                planned_row(part, i),
+            }};
+}
+
 ReportSeam seam_report(const PartResult& part, std::size_t i) {
     const Seam& seam = part.extraction.seams[i];
     const SeamModel& model = part.models[i];
     const Deviation& deviation = part.deviations[i];
-    const bool planned = std::find(part.planned_seams.begin(), part.planned_seams.end(), static_cast<int>(i)) !=
-                         part.planned_seams.end();
     return {
         deviation.pass,
         valid_utf8(deviation.verdict),
@@ -103,7 +126,7 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
             number("residual_rms_mm", "Points from fitted curve, rms", model.residual_rms_mm, "mm"),
             number("residual_max_mm", "Points from fitted curve, largest", model.residual_max_mm, "mm"),
             number("degrees_of_freedom", "Effective coefficients of the fit", model.degrees_of_freedom, "", 0),
-            number("max_curvature_per_mm", "Largest curvature", max_curvature(model.curve), "1/mm", 4),
+            curvature_row(model),
             number("deviation_signed_mean_mm", "Deviation, signed mean", deviation.signed_mean_mm, "mm"),
             number("deviation_rms_mm", "Deviation, rms", deviation.rms_mm, "mm"),
             number("deviation_p50_mm", "Deviation, p50", deviation.p50_mm, "mm"),
@@ -114,7 +137,7 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
                    deviation.coverage >= part.config.validate.min_coverage),
             number("tolerance_mm", "Tolerance", deviation.tolerance_mm, "mm"),
             judged(fact("in_tolerance", "In tolerance", deviation.pass ? "yes" : "no"), deviation.pass),
-            {"planned", "Torch path planned", planned, "", "", 0},
+            planned_row(part, i),
         }};
 }
 
@@ -159,8 +182,39 @@ ReportRows scan_rows(const PartResult& part) {
     };
 }
 
-ReportRows part_rows(const PartResult& part) {
-    double length = 0, modelled = 0, rms_square = 0, worst = 0, checked = 0, read_back = 0;
+/// What is said of the torch path and its programs, for every part.
+ReportRows path_rows(const PartResult& part) {
+    double read_back = 0;
+    for (const ProgramFile& file : part.programs) {
+        read_back = std::max(read_back, file.max_position_error_mm);
+    }
+    return {
+        count("waypoints", "Waypoints", part.plan.waypoints.size()),
+        number("path_chord_error_mm", "Straight moves from the curve, largest", part.plan.max_chord_error_mm, "mm"),
+        number("max_speed_error_percent", "Torch speed error, largest", 100 * part.plan.max_speed_error, "%", 2),
+        number("max_turn_deg", "Torch rotation per move, largest", part.plan.max_turn_deg, "°", 2),
+        number("duration_s", "Path duration", part.plan.duration_s, "s", 1),
+        count("programs", "Program files", part.programs.size()),
+        number("read_back_error_mm", "Program position error, largest", read_back, "mm", 6),
+    };
+}
+
+/// Of the seams of a nominal part, then of those that were found in a scan.
+ReportRows nominal_rows(const PartResult& part) {
+    double length = 0, error = 0;
+    for (const SeamModel& model : part.models) {
+        length += model.length_mm;
+        error = std::max(error, model.residual_max_mm);
+    }
+    return {
+        count("seams", "Nominal seams", part.models.size()),
+        number("length_mm", "Seam length", length, "mm"),
+        number("curve_error_max_mm", "Curve from the exact seam, largest", error, "mm", 9),
+    };
+}
+
+ReportRows found_rows(const PartResult& part) {
+    double length = 0, modelled = 0, rms_square = 0, worst = 0, checked = 0;
     std::size_t in_tolerance = 0;
     for (std::size_t i = 0; i < part.models.size(); ++i) {
         const Deviation& deviation = part.deviations[i];
@@ -172,9 +226,6 @@ ReportRows part_rows(const PartResult& part) {
         worst = std::max(worst, deviation.max_mm);
         in_tolerance += deviation.pass ? 1 : 0;
     }
-    for (const ProgramFile& file : part.programs) {
-        read_back = std::max(read_back, file.max_position_error_mm);
-    }
     return {
         judged(count("seams", "Seams found", part.models.size()), !part.models.empty()),
         judged(count("seams_in_tolerance", "Seams in tolerance", in_tolerance), part.pass()),
@@ -183,13 +234,6 @@ ReportRows part_rows(const PartResult& part) {
         number("deviation_rms_mm", "Deviation, rms", checked > 0 ? std::sqrt(rms_square / checked) : 0, "mm"),
         number("deviation_max_mm", "Deviation, largest", worst, "mm"),
         number("coverage_percent", "Checked on scan", length > 0 ? 100 * checked / length : 0, "%", 1),
-        count("waypoints", "Waypoints", part.plan.waypoints.size()),
-        number("path_chord_error_mm", "Straight moves from the curve, largest", part.plan.max_chord_error_mm, "mm"),
-        number("max_speed_error_percent", "Torch speed error, largest", 100 * part.plan.max_speed_error, "%", 2),
-        number("max_turn_deg", "Torch rotation per move, largest", part.plan.max_turn_deg, "°", 2),
-        number("duration_s", "Path duration", part.plan.duration_s, "s", 1),
-        count("programs", "Program files", part.programs.size()),
-        number("read_back_error_mm", "Program position error, largest", read_back, "mm", 6),
     };
 }
 
@@ -213,29 +257,34 @@ std::vector<ReportSetting> settings_of(const Config& config) {
 }
 
 std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
+    const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
+    if (part.nominal) {
+        return found + " from nominal dimensions; not compared with a scan";
+    }
     if (part.models.empty()) {
         return "No seam was found in this scan";
     }
-    const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
     return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces";
 }
 
 }  // namespace
 
 Report report_of(const PartResult& part) {
-    ensure(part.extraction.seams.size() == part.models.size() && part.nodes.size() == part.models.size() &&
-               part.deviations.size() == part.models.size(),
-           "every seam of a report has nodes, model and deviation");
+    const std::size_t scanned = part.nominal ? 0 : part.models.size();
+    ensure(part.extraction.seams.size() == scanned && part.nodes.size() == scanned && part.deviations.size() == scanned,
+           "every seam of a report has nodes, model and deviation, and a nominal one its model alone");
     Report report;
     report.part = valid_utf8(part.scan.name);
     report.pass = part.pass();
-    report.rows = part_rows(part);
-    report.scan = scan_rows(part);
+    report.rows = part.nominal ? nominal_rows(part) : found_rows(part);
+    const ReportRows path = path_rows(part);
+    report.rows.insert(report.rows.end(), path.begin(), path.end());
+    report.scan = part.nominal ? ReportRows() : scan_rows(part);
     for (const std::string& remark : part.extraction.remarks) {
         report.remarks.push_back(valid_utf8(remark));
     }
     for (std::size_t i = 0; i < part.models.size(); ++i) {
-        report.seams.push_back(seam_report(part, i));
+        report.seams.push_back(part.nominal ? nominal_report(part, i) : seam_report(part, i));
     }
     const auto passed = std::count_if(report.seams.begin(), report.seams.end(), [](const auto& s) { return s.pass; });
     report.sentence = part_sentence(part, static_cast<std::size_t>(passed));
@@ -243,42 +292,6 @@ Report report_of(const PartResult& part) {
     report.settings = settings_of(part.config);
     report.timings = part.timings;
     return report;
-}
-
-const ReportRow& find_row(const ReportRows& rows, std::string_view name) {
-    const auto found = std::find_if(rows.begin(), rows.end(), [&](const ReportRow& r) { return r.name == name; });
-    ensure(found != rows.end(), "a report shows only rows that it has");
-    return *found;
-}
-
-std::string shown(const ReportRow& row) {
-    if (const auto* yes = std::get_if<bool>(&row.value)) {
-        return *yes ? "yes" : "no";
-    }
-    if (const auto* whole = std::get_if<std::int64_t>(&row.value)) {
-        return grouped(*whole);
-    }
-    if (const auto* text = std::get_if<std::string>(&row.value)) {
-        return *text;
-    }
-    const double value = std::get<double>(row.value);
-    const double unit_of_last_place = std::pow(10.0, -row.decimals);
-    const bool vanishes = value != 0 && std::abs(value) < 0.5 * unit_of_last_place;
-    return vanishes ? '<' + decimal(unit_of_last_place, row.decimals) : decimal(value, row.decimals);
-}
-
-std::string exact(const ReportRow& row) {
-    if (const auto* yes = std::get_if<bool>(&row.value)) {
-        return *yes ? "true" : "false";
-    }
-    if (const auto* whole = std::get_if<std::int64_t>(&row.value)) {
-        return std::to_string(*whole);
-    }
-    if (const auto* text = std::get_if<std::string>(&row.value)) {
-        return *text;
-    }
-    const double value = std::get<double>(row.value);
-    return std::isfinite(value) ? shortest(value) : "null";
 }
 
 }  // namespace seampath

@@ -49,7 +49,7 @@ struct Report {
     bool pass = false;
     std::string sentence;
     ReportRows rows;
-    ReportRows scan;
+    ReportRows scan;  ///< empty for a nominal part
     std::vector<std::string> remarks;
     std::vector<ReportSeam> seams;  ///< parallel to PartResult::models
     std::vector<ReportProgram> programs;
@@ -58,6 +58,9 @@ struct Report {
 };
 
 Report report_of(const PartResult& part);
+
+/// Whether there is a row of that name: a nominal part has none that speak of a scan.
+bool has_row(const ReportRows& rows, std::string_view name);
 
 /// The row of that name; there must be one.
 const ReportRow& find_row(const ReportRows& rows, std::string_view name);

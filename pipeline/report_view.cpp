@@ -16,16 +16,32 @@ constexpr std::size_t kMaxSamples = 4000;
 /// Torch poses are shown this far apart, as a share of the scene's radius.
 constexpr double kTorchSpacing = 0.07;
 
+/// What a nominal model shows of itself: its points at the stations of its flanks.
+std::vector<Seam> seams_of(const std::vector<SeamModel>& models) {
+    std::vector<Seam> seams;
+    for (const SeamModel& model : models) {
+        Seam seam;
+        seam.kind = model.kind;
+        seam.closed = model.closed;
+        const ArcLength arc(model.curve);
+        for (const FlankSample& f : model.flanks) {
+            seam.points.push_back({position(model.curve, arc.parameter(f.station_mm)), f.n1, f.n2, f.sigma_mm});
+        }
+        seams.push_back(std::move(seam));
+    }
+    return seams;
+}
+
 /// Middle and radius of what is to be in the picture: the seams, or where there is none the bulk of the scan (stray
 /// points far away do not count).
-void frame(const PartResult& part, ViewScene& scene) {
+void frame(const PartResult& part, const std::vector<Seam>& seams, ViewScene& scene) {
     std::array<std::vector<double>, 3> axis;
     const auto add = [&](const Eigen::Vector3d& p) {
         for (int k = 0; k < 3; ++k) {
             axis[static_cast<std::size_t>(k)].push_back(p[k]);
         }
     };
-    for (const Seam& seam : part.extraction.seams) {
+    for (const Seam& seam : seams) {
         for (const SeamPoint& point : seam.points) {
             add(point.p);
         }
@@ -54,6 +70,21 @@ void frame(const PartResult& part, ViewScene& scene) {
     scene.radius_mm = std::max(1.0, (high - low).norm() / 2);
 }
 
+/// The seam of a nominal part: nothing of it was checked.
+ViewSeam nominal_view(const SeamModel& model, const Seam& seam, const Scan& no_scan, const ViewScene& scene) {
+    ViewSeam view;
+    const std::size_t step = seam.points.size() / kMaxSamples + 1;
+    for (std::size_t k = 0; k < seam.points.size(); k += step) {
+        view.samples.push_back({seam.points[k].p - scene.centre, model.flanks[k].station_mm});
+    }
+    if (model.closed) {
+        view.samples.push_back(view.samples.front());
+        view.samples.back().station_mm = model.length_mm;
+    }
+    view.camera = best_camera({&seam, 1}, no_scan, scene);
+    return view;
+}
+
 ViewSeam view_seam(const PartResult& part, std::size_t i, const ViewScene& scene) {
     const Seam& seam = part.extraction.seams[i];
     const Deviation& deviation = part.deviations[i];
@@ -71,7 +102,7 @@ ViewSeam view_seam(const PartResult& part, std::size_t i, const ViewScene& scene
         view.samples.back().station_mm = part.models[i].length_mm;
     }
     for (const std::size_t node : part.nodes[i].index) {
-        view.nodes.push_back(seam.points[node].p - scene.centre);
+        view.nodes.emplace_back(seam.points[node].p - scene.centre);
     }
     view.tolerance_mm = deviation.tolerance_mm;
     view.camera = best_camera({&seam, 1}, part.scan, scene);
@@ -100,12 +131,18 @@ std::vector<ViewTorch> view_torch(const Plan& plan, const ViewScene& scene) {
 
 ViewScene view_scene(const PartResult& part) {
     ViewScene scene;
-    frame(part, scene);
-    scene.clouds = thin_scan(part.scan, part.extraction.seams, scene.centre);
-    scene.camera = best_camera(part.extraction.seams, part.scan, scene);
+    scene.nominal = part.nominal;
+    const std::vector<Seam> seams = part.nominal ? seams_of(part.models) : part.extraction.seams;
+    frame(part, seams, scene);
+    scene.clouds = thin_scan(part.scan, seams, scene.centre);
+    scene.camera = best_camera(seams, part.scan, scene);
     for (std::size_t i = 0; i < part.models.size(); ++i) {
-        scene.seams.push_back(view_seam(part, i, scene));
-        scene.scale_mm = std::max(scene.scale_mm, part.deviations[i].tolerance_mm);
+        if (part.nominal) {
+            scene.seams.push_back(nominal_view(part.models[i], seams[i], part.scan, scene));
+        } else {
+            scene.seams.push_back(view_seam(part, i, scene));
+            scene.scale_mm = std::max(scene.scale_mm, part.deviations[i].tolerance_mm);
+        }
     }
     scene.torch = view_torch(part.plan, scene);
     return scene;

@@ -46,6 +46,7 @@ struct ViewTorch {
 };
 
 struct ViewScene {
+    bool nominal = false;             ///< there is no scan
     Eigen::Vector3d centre{0, 0, 0};  ///< scan frame, mm
     double radius_mm = 1;             ///< of a sphere around the centre that holds all seams (or the scan)
     ViewCamera camera;

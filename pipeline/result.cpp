@@ -5,6 +5,9 @@
 namespace seampath {
 
 bool PartResult::pass() const {
+    if (nominal) {
+        return !models.empty();
+    }
     return !deviations.empty() &&
            std::all_of(deviations.begin(), deviations.end(), [](const Deviation& deviation) { return deviation.pass; });
 }

@@ -19,9 +19,11 @@ struct StageTiming {
 };
 
 /// Everything that is known of one part after a run. `nodes`, `models` and `deviations` run parallel to
-/// `extraction.seams`; `plan` and `programs` hold only the seams that may be welded.
+/// `extraction.seams`; `plan` and `programs` hold only the seams that may be welded. A nominal part has a name and
+/// models, plan and programs; of a scan and of what stages make of one it has nothing.
 struct PartResult {
     Config config;
+    bool nominal = false;  ///< the seams follow from dimensions, not from a scan
     Scan scan;
     Extraction extraction;
     std::vector<Nodes> nodes;
@@ -32,7 +34,7 @@ struct PartResult {
     std::vector<ProgramFile> programs;
     std::vector<StageTiming> timings;
 
-    bool pass() const;  ///< at least one seam, and all of them in tolerance
+    bool pass() const;  ///< at least one seam, and all of them in tolerance, where there is a scan to hold them against
 };
 
 }  // namespace seampath

@@ -31,6 +31,20 @@ Plan plan_seams(const PartResult& part) {
     return models.empty() ? Plan() : plan(models, part.config.plan);
 }
 
+/// From the models to the programs, for `part.planned_seams`.
+void plan_and_export(PartResult& part, Walk& walk, const std::string& input) {
+    walk.stage(
+        "plan", part.plan, [&] { return plan_seams(part); }, plan_summary, input);
+
+    walk.always(
+        "export",
+        [&] {
+            part.programs = part.planned_seams.empty() ? std::vector<ProgramFile>()
+                                                       : export_programs(part.plan, part.config.export_);
+        },
+        export_summary);
+}
+
 /// From the scan to the programs, stage by stage.
 void walk_stages(PartResult& part, Walk& walk) {
     const Config& config = part.config;
@@ -51,17 +65,7 @@ void walk_stages(PartResult& part, Walk& walk) {
         "validate", part.deviations, [&] { return walk.each(seams.size(), validate_seam); }, validate_summary);
 
     part.planned_seams = seams_to_weld(part);
-    const std::string even_if = part.config.export_.even_if_out_of_tolerance ? "all seams" : "seams in tolerance";
-    walk.stage(
-        "plan", part.plan, [&] { return plan_seams(part); }, plan_summary, even_if);
-
-    walk.always(
-        "export",
-        [&] {
-            part.programs =
-                part.planned_seams.empty() ? std::vector<ProgramFile>() : export_programs(part.plan, config.export_);
-        },
-        export_summary);
+    plan_and_export(part, walk, config.export_.even_if_out_of_tolerance ? "all seams" : "seams in tolerance");
 }
 
 /// Programs and reports of an earlier run; they must not stand beside a config that they don't follow from.
@@ -75,8 +79,10 @@ void remove_products(const RunFolder& folder) {
 }
 
 void write_products(const PartResult& part, const Walk& walk) {
-    walk.write("seam_points.csv", seam_points_csv(part.extraction.seams));
-    walk.write("waypoints.csv", waypoints_csv(part.plan.waypoints));
+    if (!part.nominal) {
+        walk.write("seam_points.csv", seam_points_csv(part.extraction.seams));
+    }
+    walk.write("waypoints.csv", waypoints_csv(part.plan.waypoints, frame_of(part)));
     walk.write("seams.json", seams_json(part));
     std::set<std::string> robots;
     for (const auto& program : part.programs) {
@@ -119,6 +125,26 @@ PartResult run_part(Scan scan, const Config& config, const Progress& progress) {
     part.scan = std::move(scan);
     Walk walk(part, progress);
     walk_stages(part, walk);
+    return part;
+}
+
+PartResult run_nominal(const std::string& name, std::vector<SeamModel> models, const fs::path& out,
+                       const Config& config, const Progress& progress) {
+    const RunFolder folder(out);
+    PartResult part;
+    part.config = config;
+    part.nominal = true;
+    part.scan.name = name;
+    part.models = std::move(models);
+    for (std::size_t i = 0; i < part.models.size(); ++i) {
+        part.planned_seams.push_back(static_cast<int>(i));
+    }
+    Walk walk(part, progress, &folder);
+    remove_products(folder);
+    walk.write("config.resolved.json", config_json(config));
+    plan_and_export(part, walk, encode(part.models));
+    walk.always(
+        "report", [&] { write_products(part, walk); }, report_summary);
     return part;
 }
 

@@ -36,4 +36,9 @@ PartResult run_part(const std::filesystem::path& scan_file, const std::filesyste
 /// The same way for a scan in memory, without a folder and without a report.
 PartResult run_part(Scan scan, const Config& config, const Progress& progress = {});
 
+/// Seams that follow from nominal dimensions, without a scan: planned, exported and reported like those of a part. The
+/// folder gets the same files but those of a scan and of the stages that work on one. Throws as run_part does.
+PartResult run_nominal(const std::string& name, std::vector<SeamModel> models, const std::filesystem::path& out,
+                       const Config& config, const Progress& progress = {});
+
 }  // namespace seampath

@@ -117,6 +117,15 @@ std::string svg_end() {
     return "</svg>\n";
 }
 
+std::string svg_file(std::string_view svg, std::string_view css) {
+    constexpr std::string_view kOpening = "<svg";
+    ensure(svg.starts_with(kOpening), "an SVG begins with its element");
+    const std::size_t inside = svg.find('>') + 1;
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\"" +
+           std::string(svg.substr(kOpening.size(), inside - kOpening.size())) + "<style>" + std::string(css) +
+           "</style>" + std::string(svg.substr(inside));
+}
+
 std::string svg_line(const PlotAxes& axes, std::span<const PlotPoint> points, std::string_view style) {
     std::string path;
     bool pen_down = false;

@@ -34,6 +34,9 @@ std::vector<double> nice_ticks(double low, double high, int count);
 std::string svg_axes(const PlotAxes& axes, std::string_view title);
 std::string svg_end();
 
+/// A finished SVG as a file of its own, with its style in it instead of the page's.
+std::string svg_file(std::string_view svg, std::string_view css);
+
 /// A line through the points. Lines of very many points are thinned so that every extreme stays.
 std::string svg_line(const PlotAxes& axes, std::span<const PlotPoint> points, std::string_view style);
 

@@ -83,12 +83,15 @@ std::string seam_points_csv(const std::vector<Seam>& seams) {
     return text;
 }
 
-std::string waypoints_csv(const std::vector<Waypoint>& waypoints) {
-    std::string text =
-        "# frame: scan (right-handed); tool frame: +Z along the torch into the joint, +X along travel\n"
-        "# unit: mm, s, mm/s\n"
-        "# quaternion: qw,qx,qy,qz, scan_from_tool\n"
-        "seam,index,kind,station_mm,x,y,z,qw,qx,qy,qz,speed_mm_s,time_s,sigma_mm\n";
+std::string frame_of(const PartResult& part) {
+    return part.nominal ? "nominal" : "scan";
+}
+
+std::string waypoints_csv(const std::vector<Waypoint>& waypoints, const std::string& frame) {
+    std::string text = "# frame: " + frame +
+                       " (right-handed); tool frame: +Z along the torch into the joint, +X along travel\n" +
+                       "# unit: mm, s, mm/s\n" + "# quaternion: qw,qx,qy,qz, " + frame + "_from_tool\n" +
+                       "seam,index,kind,station_mm,x,y,z,qw,qx,qy,qz,speed_mm_s,time_s,sigma_mm\n";
     for (const auto& w : waypoints) {
         std::string line = std::to_string(w.seam) + "," + std::to_string(w.index) + "," + std::string(name(w.kind));
         append(line, {w.station_mm, w.p.x(), w.p.y(), w.p.z(), w.q.w(), w.q.x(), w.q.y(), w.q.z(), w.speed_mm_s,
@@ -101,18 +104,21 @@ std::string waypoints_csv(const std::vector<Waypoint>& waypoints) {
 std::string seams_json(const PartResult& part) {
     Json seams = Json::array();
     for (std::size_t i = 0; i < part.models.size(); ++i) {
-        const Seam& seam = part.extraction.seams.at(i);
-        seams.push_back({{"seam", i},
-                         {"kind", name(part.models[i].kind)},
-                         {"closed", part.models[i].closed},
-                         {"length_mm", part.models[i].length_mm},
-                         {"confidence", seam.confidence},
-                         {"points", seam.points.size()},
-                         {"model", model_json(part.models[i])},
-                         {"nodes", nodes_json(part.nodes.at(i), seam)},
-                         {"deviation", deviation_json(part.deviations.at(i))}});
+        const SeamModel& model = part.models[i];
+        Json seam{{"seam", i}, {"kind", name(model.kind)}, {"closed", model.closed}, {"length_mm", model.length_mm}};
+        if (part.nominal) {
+            seam["model"] = model_json(model);
+        } else {
+            const Seam& extracted = part.extraction.seams.at(i);
+            seam["confidence"] = extracted.confidence;
+            seam["points"] = extracted.points.size();
+            seam["model"] = model_json(model);
+            seam["nodes"] = nodes_json(part.nodes.at(i), extracted);
+            seam["deviation"] = deviation_json(part.deviations.at(i));
+        }
+        seams.push_back(std::move(seam));
     }
-    return Json{{"frame", "scan"}, {"unit", "mm"}, {"seams", std::move(seams)}}.dump(1) + "\n";
+    return Json{{"frame", frame_of(part)}, {"unit", "mm"}, {"seams", std::move(seams)}}.dump(1) + "\n";
 }
 
 std::string manifest_json(const std::vector<ProgramFile>& programs, const std::string& robot) {

@@ -11,10 +11,14 @@ namespace seampath {
 /// Extracted points, scan frame, mm: seam,index,station_mm,x,y,z,n1x,...,sigma_mm. The station is along the polyline.
 std::string seam_points_csv(const std::vector<Seam>& seams);
 
-/// Torch poses: comment lines with frame, unit and quaternion order, then seam,index,kind,station_mm,x,...,sigma_mm.
-std::string waypoints_csv(const std::vector<Waypoint>& waypoints);
+/// The frame of a part's positions: that of its "scan", or of its "nominal" dimensions.
+std::string frame_of(const PartResult& part);
 
-/// Per seam: joint kind, closed or open, length, model, nodes, deviation.
+/// Torch poses: comment lines with frame, unit and quaternion order, then seam,index,kind,station_mm,x,...,sigma_mm.
+std::string waypoints_csv(const std::vector<Waypoint>& waypoints, const std::string& frame);
+
+/// Per seam: joint kind, closed or open, length, model; where there is a scan, also confidence, points, nodes and
+/// deviation.
 std::string seams_json(const PartResult& part);
 
 /// For each program file of one robot: its SHA-256, its rounding, and the largest errors found when it was read back.

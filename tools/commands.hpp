@@ -24,5 +24,7 @@ Command options_command(CLI::App& program);
 Command dataset_command(CLI::App& program);
 Command interpolate_command(CLI::App& program);
 Command parametrize_command(CLI::App& program);
+Command saddle_command(CLI::App& program);
+Command mechanism_command(CLI::App& program);
 
 }  // namespace seampath

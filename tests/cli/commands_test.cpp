@@ -173,6 +173,9 @@ TEST(Cli, EveryHelpHasThreeWorkedExamples) {
                                                    {"dataset", "make"},
                                                    {"interpolate"},
                                                    {"parametrize"},
+                                                   {"saddle"},
+                                                   {"mechanism"},
+                                                   {"mechanism", "two-tier"},
                                                    {}}) {
         auto arguments = command;
         arguments.push_back("--help");
