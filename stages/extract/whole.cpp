@@ -18,6 +18,7 @@ constexpr double kMostScale = 1.3;       // of its residuals, in those of the wi
 constexpr double kMedianSquare = 0.455;  // median of the square of a normal variable
 constexpr double kRipple = 0.25;         // of its noise, rms, by which a scanner bends smooth surfaces
 constexpr double kStandsOut = 16;        // squared: a place this many variances off the surface is of another one
+constexpr double kAstray = 9;            // squared, of a window's surface off the whole one, in variances of both
 constexpr std::size_t kMostPoints = 60000;
 
 /// The points of one flank along a seam.
@@ -216,10 +217,12 @@ WholeFlank shrunk(const std::vector<TrackPoint>& way, int k, const Pool& pool, c
         const double sigma = surface.sigma(way[i].section.p);
         whole.at[i].variance += sigma * sigma + bend.variance;
         // Both come from the same points, so that the surer one is taken and not a mean of the two; no jump between
-        // places.
-        const double own = way[i].modelled ? 1e300 : std::pow(way[i].flank_sigma[k], 4);
-        whole.share.push_back(own / (own + std::pow(whole.at[i].variance, 2)));
-        total.push_back(whole.share[i] * whole.at[i].variance + (1 - whole.share[i]) * std::sqrt(own));
+        // places. A window far off saw something else: points that depart together stand out of the surface itself.
+        const double own = std::pow(way[i].flank_sigma[k], 2),
+                     off = surface.distance(way[i].section.p) - whole.at[i].value;
+        const bool astray = way[i].modelled || off * off > kAstray * (own + whole.at[i].variance);
+        whole.share.push_back(astray ? 1 : own * own / (own * own + std::pow(whole.at[i].variance, 2)));
+        total.push_back(whole.share[i] * whole.at[i].variance + (1 - whole.share[i]) * own);
     }
     whole.variance = quantile(total, 0.5);
     return whole;
@@ -245,19 +248,13 @@ std::optional<WholeFlank> whole_flank(const Tracker& tracker, const std::vector<
     }
     const double least = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
     std::optional<WholeFlank> best;
-    std::vector<double> local;
-    for (const TrackPoint& place : way) {
-        local.push_back(place.flank_sigma[k] * place.flank_sigma[k]);
-    }
-    double least_variance = quantile(local, 0.5);
     for (const auto& surface : {fit_plane(pool.points, pool.block, pool.normals.front(), least),
                                 fit_cylinder(pool.points, pool.block, pool.places, pool.normals, least)}) {
         if (!surface || surface->share_taken() < kLeastTaken || surface->scale() > kMostScale * pool.scale) {
             continue;
         }
         WholeFlank whole = shrunk(way, k, pool, *surface);
-        if (whole.variance < least_variance && !contradicted(way, k, whole)) {
-            least_variance = whole.variance;
+        if ((!best || whole.variance < best->variance) && !contradicted(way, k, whole)) {
             best = std::move(whole);
         }
     }
