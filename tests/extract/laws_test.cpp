@@ -79,13 +79,14 @@ TEST(ExtractLaws, SeamMovesWithTheScan) {
                                            Eigen::AngleAxisd(0.7 + trial, Vector3d(1, 2 - trial, -1).normalized());
             const Seam there = only_seam(moved(scan, move));
             EXPECT_NEAR(length_of(there), length_of(here), 1);
-            double squares = 0, sigma = 0;
+            double squares = 0, count = 0;
             for (const SeamPoint& point : there.points) {
                 const auto d = distance_across(curve, move.inverse() * point.p);
                 squares += d ? *d * *d : 0;
-                sigma += d ? point.sigma_mm * point.sigma_mm : 0;
+                count += d.has_value();
             }
-            EXPECT_LT(std::sqrt(squares), 0.4 * std::sqrt(sigma)) << "trial " << trial;
+            // Samples are drawn by coordinates, so that other points take part: a fortieth of their noise is allowed.
+            EXPECT_LT(std::sqrt(squares / count), 0.045 / 40) << "trial " << trial;
             const SeamModel model_there = model_of(there);
             EXPECT_NEAR(model_there.length_mm, model.length_mm, 1);
         }
