@@ -70,6 +70,24 @@ bool flank_goes_through(const Tracker& tracker, const TrackPoint& place, double 
     return false;
 }
 
+// Whether something stands across the joint between two ends, a rib or another wall: points in the open between the
+// flanks.
+bool wall_between(const Tracker& tracker, const TrackPoint& a, const TrackPoint& b, double density) {
+    constexpr double kLeastShare = 0.2;  // of a wall that fills the corner
+    const Eigen::Vector3d middle = 0.5 * (a.section.p + b.section.p), chord = b.section.p - a.section.p;
+    const Eigen::Vector3d t = chord.normalized(), n1 = (a.section.n1 + b.section.n1).normalized(),
+                          n2 = (a.section.n2 + b.section.n2).normalized();
+    const SectionWindow window = tracker.window_of(tracker.scale_at(a.section));
+    const double near = 2 * window.band, far = 0.7 * window.away, half = 0.5 * chord.norm() + 2 * tracker.step;
+    double between = 0;
+    tracker.grid.for_points_in_ball(middle, std::hypot(1.5 * far, half), [&](const Eigen::Vector3f& q, double) {
+        const Eigen::Vector3d v = q.cast<double>() - middle;
+        const double z1 = v.dot(n1), z2 = v.dot(n2);
+        between += std::min(z1, z2) > near && std::max(z1, z2) < far && std::abs(v.dot(t)) < half;
+    });
+    return between > kLeastShare * density * (far - near) * (far - near);
+}
+
 struct Bridge {
     double cost = 0;
     std::size_t from = 0, to = 0;             // the end of track `from` meets the beginning of track `to`,
@@ -92,6 +110,9 @@ std::optional<Bridge> bridge(const Tracker& tracker, const Track& from, const Tr
     Bridge result;
     result.cost = gap * (1 + leave + arrive);
     const double spacing = tracker.scale_at(a.section).spacing, density = 1 / (spacing * spacing);
+    if (wall_between(tracker, a, b, density)) {
+        return std::nullopt;
+    }
     const int count = static_cast<int>(std::lround(gap / tracker.step));
     int through = 0;
     for (int i = 1; i < count; ++i) {
