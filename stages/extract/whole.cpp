@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "stages/extract/pool.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/surface_fit.hpp"
 
@@ -19,60 +20,6 @@ constexpr double kMedianSquare = 0.455;  // median of the square of a normal var
 constexpr double kRipple = 0.25;         // of its noise, rms, by which a scanner bends smooth surfaces
 constexpr double kStandsOut = 16;        // squared: a place this many variances off the surface is of another one
 constexpr double kAstray = 9;            // squared, of a window's surface off the whole one, in variances of both
-constexpr std::size_t kMostPoints = 60000;
-
-/// The points of one flank along a seam.
-struct Pool {
-    std::vector<Eigen::Vector3d> points;
-    std::vector<std::uint32_t> place;              ///< of each point, ascending
-    std::vector<std::uint32_t> station_block;      ///< of each point: a stretch of the seam as long as a window
-    std::vector<std::uint32_t> block;              ///< of each point: the same, cut into three across the flank
-    std::vector<double> u;                         ///< distance of each point from the seam, mm
-    std::vector<Eigen::Vector3d> places, normals;  ///< of the measured places
-    std::size_t reach = 1;                         ///< places to each side that share a window
-    double correlation = 1;  ///< variance of means over that of as many independent points, of those taken
-    double scale = 0;        ///< robust 1-sigma of the points about the windows' own surfaces, mm
-};
-
-Pool pool_of(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) {
-    constexpr std::uint32_t kBands = 3;
-    Pool pool;
-    std::size_t count = 0;
-    for (const TrackPoint& place : way) {
-        count += place.slab[k].size();
-    }
-    const std::size_t stride = 1 + count / kMostPoints;
-    const ScanScale scale = tracker.scale_at(way[way.size() / 2].section);
-    pool.correlation = 1 + (scale.correlation - 1) / static_cast<double>(stride);
-    const double along = tracker.window_of(scale).along;
-    pool.reach = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(along / tracker.step)), 1,
-                                         std::max<std::size_t>(1, way.size() / 16));
-    std::vector<double> scales;
-    count = 0;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        for (const FlankSample& sample : way[i].slab[k]) {
-            if (count++ % stride == 0) {
-                pool.points.push_back(sample.p.cast<double>());
-                pool.place.push_back(static_cast<std::uint32_t>(i));
-                pool.u.push_back(sample.u);
-            }
-        }
-        if (!way[i].modelled) {
-            pool.places.push_back(way[i].section.p);
-            pool.normals.push_back(k == 0 ? way[i].section.n1 : way[i].section.n2);
-            scales.push_back(way[i].flank_scale[k]);
-        }
-    }
-    pool.scale = quantile(scales, 0.5);
-    std::vector<double> sorted = pool.u;
-    const double third = quantile(sorted, 1.0 / 3), two_thirds = quantile(sorted, 2.0 / 3);
-    for (std::size_t i = 0; i < pool.points.size(); ++i) {
-        const std::uint32_t band = (pool.u[i] > third) + (pool.u[i] > two_thirds);
-        pool.station_block.push_back(static_cast<std::uint32_t>(pool.place[i] / (2 * pool.reach)));
-        pool.block.push_back(pool.station_block.back() * kBands + band);
-    }
-    return pool;
-}
 
 /// Normal equations of a polynomial of the residuals over the distance from the seam.
 struct Profile {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "stages/extract/track.hpp"
+
+/// Where open seams end: where the first of the two flanks does.
+namespace seampath::detail {
+
+/// Whether the way runs straight, as far as noise lets it be seen, from its front or back over `length` mm.
+bool straight_end(const std::vector<TrackPoint>& way, bool front, double length, double noise);
+
+/// The tracker for a place `to_end` mm before a straight end, with windows of `along` mm. Towards the end the window
+/// finds flanks on one side only: it keeps their length by reaching further that way. Else the place at the end, where
+/// the fit is carried on, would be the worst measured of all. Beside a bent end flanks bend too, in ways that the fit
+/// does not know so far away.
+Tracker near_end(const Tracker& tracker, double to_end, double along);
+
+/// Shortens or lengthens one end so that it lies where the first flank ends. Judged from a few steps inside, where both
+/// flanks are whole: fits at the end itself have data on one side only.
+void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front);
+
+}  // namespace seampath::detail
