@@ -32,8 +32,9 @@ void members(auto& archive, Is<Seam> auto& v) {
 }
 
 void members(auto& archive, Is<Extraction> auto& v) {
-    auto& [seams, spacing_mm, noise_mm, orientation_reason, remarks] = v;
+    auto& [seams, spacing_mm, noise_mm, views, registration_mm, orientation_reason, remarks] = v;
     archive("seams", seams)("spacing_mm", spacing_mm)("noise_mm", noise_mm);
+    archive("views", views)("registration_mm", registration_mm);
     archive("orientation_reason", orientation_reason)("remarks", remarks);
 }
 

@@ -178,6 +178,9 @@ ReportRows scan_rows(const PartResult& part) {
         number("size_z_mm", "Extent in z", static_cast<double>(size.z()), "mm", 1),
         number("spacing_mm", "Typical point distance", part.extraction.spacing_mm, "mm"),
         number("noise_mm", "Noise, rms about the surfaces", part.extraction.noise_mm, "mm"),
+        count("views", "Views, by the order of the points", static_cast<std::size_t>(part.extraction.views)),
+        number("registration_mm", "Registration of the views, 1σ along any direction", part.extraction.registration_mm,
+               "mm", 4),
         fact("orientation_reason", "How the side of the air was told", part.extraction.orientation_reason),
     };
 }

@@ -10,9 +10,12 @@
 #include "stages/extract/creases.hpp"
 #include "stages/extract/join.hpp"
 #include "stages/extract/measure.hpp"
+#include "stages/extract/registration.hpp"
 #include "stages/extract/surfels.hpp"
 #include "stages/extract/track.hpp"
+#include "stages/extract/whole.hpp"
 #include "stages/geometry/robust.hpp"
+#include "stages/geometry/views.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -79,27 +82,72 @@ double length_of(const Points& points, Position&& position) {
     return length;
 }
 
-// Adds the seam along the track to the result, or a remark why it is none.
-void add_seam(Extraction& result, const Tracker& tracker, const Track& track, double min_length,
-              const Eigen::Vector3d& origin) {
-    const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
-    const double least = min_length > 0 ? min_length : kLeastLength * spacing;
-    double length = length_of(track.points, [](const TrackPoint& p) { return p.section.p; });
-    if (length >= least) {
-        auto seam = measure_track(tracker, track, origin);
-        if (!seam) {
-            result.remarks.push_back("a crease of " + fixed(length, 1) +
-                                     " mm was left out: its flanks are too narrow or too rough for a joint");
-            return;
+// A track that turned out to be a joint.
+struct Measured {
+    std::vector<TrackPoint> way;
+    bool closed = false;
+};
+
+// The joints among the tracks; of the others a remark says why they are none.
+std::vector<Measured> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length,
+                                  std::vector<std::string>& remarks) {
+    const auto length = [](const std::vector<TrackPoint>& way) {
+        return length_of(way, [](const TrackPoint& p) { return p.section.p; });
+    };
+    std::vector<Measured> joints;
+    for (const Track& track : tracks) {
+        const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
+        const double least = min_length > 0 ? min_length : kLeastLength * spacing;
+        double found = length(track.points);
+        if (found >= least) {
+            auto way = measure_track(tracker, track);
+            if (!way) {
+                remarks.push_back("a crease of " + fixed(found, 1) +
+                                  " mm was left out: its flanks are too narrow or too rough for a joint");
+                continue;
+            }
+            found = length(*way);
+            if (found >= least) {
+                joints.push_back({std::move(*way), track.closed});
+                continue;
+            }
         }
-        length = length_of(seam->points, [](const SeamPoint& p) { return p.p; });
-        if (length >= least) {
-            result.seams.push_back(std::move(*seam));
-            return;
-        }
+        remarks.push_back("a joint of " + fixed(found, 1) + " mm was left out: shorter than " + fixed(least, 1) +
+                          " mm");
     }
-    result.remarks.push_back("a joint of " + fixed(length, 1) + " mm was left out: shorter than " + fixed(least, 1) +
-                             " mm");
+    return joints;
+}
+
+Seam seam_of(const Measured& joint, const Eigen::Vector3d& origin) {
+    Seam seam;
+    seam.closed = joint.closed;
+    double bend = 0;
+    for (const TrackPoint& point : joint.way) {
+        seam.points.push_back(
+            {origin + point.section.p, point.section.n1, point.section.n2, point.sigma, point.modelled});
+        bend += point.bend;
+    }
+    // Half a radian between the flanks and nobody doubts that they are two.
+    seam.confidence = std::min(1.0, bend / static_cast<double>(joint.way.size()) / 0.5);
+    return seam;
+}
+
+// Where the joints lie, by all that their flanks tell, longest first.
+void settle_all(Extraction& result, const Tracker& following, std::vector<Measured> joints,
+                const Eigen::Vector3d& origin) {
+    Tracker tracker = following;
+    tracker.window_of = measuring_window;
+    ViewDifferences differences;
+    for (const Measured& joint : joints) {
+        add_differences(differences, joint.way);
+    }
+    result.registration_mm = registration_of(differences);
+    for (Measured& joint : joints) {
+        settle_on_whole_flanks(tracker, result.registration_mm, joint.way);
+        result.seams.push_back(seam_of(joint, origin));
+    }
+    std::stable_sort(result.seams.begin(), result.seams.end(),
+                     [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
 }
 
 }  // namespace
@@ -136,12 +184,13 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     result.orientation_reason = surfels.orientation_reason;
     const std::vector<Crease> seeds = seeds_of(find_creases(surfels, field));
 
-    const Tracker tracker{grid, field, following_window, options.station_mm > 0 ? options.station_mm : grid.cell()};
-    for (const Track& track : join_tracks(tracker, follow_all(tracker, seeds))) {
-        add_seam(result, tracker, track, options.min_length_mm, scan.origin_mm);
-    }
-    std::stable_sort(result.seams.begin(), result.seams.end(),
-                     [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
+    // An organised cloud is one view.
+    const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
+    result.views = static_cast<int>(views.size());
+    const Tracker tracker{grid, field, views, following_window,
+                          options.station_mm > 0 ? options.station_mm : grid.cell()};
+    const std::vector<Track> tracks = join_tracks(tracker, follow_all(tracker, seeds));
+    settle_all(result, tracker, measure_all(tracker, tracks, options.min_length_mm, result.remarks), scan.origin_mm);
     return result;
 }
 

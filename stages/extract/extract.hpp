@@ -22,9 +22,11 @@ Fields describe(ExtractOptions&);
 
 /// The seams found, and the numbers that extraction took from the scan.
 struct Extraction {
-    std::vector<Seam> seams;           ///< longest first
-    double spacing_mm = 0;             ///< typical distance of neighbouring points on one surface
-    double noise_mm = 0;               ///< rms of points about locally fitted surfaces
+    std::vector<Seam> seams;     ///< longest first
+    double spacing_mm = 0;       ///< typical distance of neighbouring points on one surface
+    double noise_mm = 0;         ///< rms of points about locally fitted surfaces
+    int views = 1;               ///< that the scan was put together from, by the order of its points
+    double registration_mm = 0;  ///< 1-sigma of their shifts against each other along any direction; part of sigma_mm
     std::string orientation_reason;    ///< how the side of the air was told from the side of the material
     std::vector<std::string> remarks;  ///< one sentence each, e.g. a candidate that was dropped and why
 };

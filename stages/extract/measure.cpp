@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "stages/extract/ends.hpp"
-#include "stages/extract/whole.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 
@@ -131,7 +130,7 @@ bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::s
 
 }  // namespace
 
-std::optional<Seam> measure_track(const Tracker& following, const Track& track, const Eigen::Vector3d& origin) {
+std::optional<std::vector<TrackPoint>> measure_track(const Tracker& following, const Track& track) {
     Tracker tracker = following;
     tracker.window_of = measuring_window;
     const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
@@ -143,21 +142,7 @@ std::optional<Seam> measure_track(const Tracker& following, const Track& track, 
         place_end(tracker, way, false);
         place_end(tracker, way, true);
     }
-    if (way.size() < kLeastPlaces) {
-        return std::nullopt;
-    }
-    settle_on_whole_flanks(tracker, way);
-    Seam seam;
-    seam.closed = track.closed;
-    double bend = 0;
-    for (const TrackPoint& point : way) {
-        seam.points.push_back(
-            {origin + point.section.p, point.section.n1, point.section.n2, point.sigma, point.modelled});
-        bend += point.bend;
-    }
-    // Half a radian between the flanks and nobody doubts that they are two.
-    seam.confidence = std::min(1.0, bend / static_cast<double>(way.size()) / 0.5);
-    return seam;
+    return way.size() < kLeastPlaces ? std::nullopt : std::optional(std::move(way));
 }
 
 }  // namespace seampath::detail

@@ -33,6 +33,7 @@ Pool pool_of(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) 
                 pool.points.push_back(sample.p.cast<double>());
                 pool.place.push_back(static_cast<std::uint32_t>(i));
                 pool.u.push_back(sample.u);
+                pool.view.push_back(sample.view);
             }
         }
         if (!way[i].modelled) {

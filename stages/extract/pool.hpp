@@ -15,6 +15,7 @@ struct Pool {
     std::vector<std::uint32_t> place;              ///< of each point, ascending
     std::vector<std::uint32_t> station_block;      ///< of each point: a stretch of the seam as long as a window
     std::vector<std::uint32_t> block;              ///< of each point: the same, cut into three across the flank
+    std::vector<std::uint32_t> view;               ///< of each point
     std::vector<double> u;                         ///< distance of each point from the seam, mm
     std::vector<Eigen::Vector3d> places, normals;  ///< of the measured places
     std::size_t reach = 1;                         ///< places to each side that share a window

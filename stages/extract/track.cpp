@@ -52,18 +52,41 @@ bool met(const std::vector<Track>& taken, const Section& place, double reach) {
     return std::any_of(taken.begin(), taken.end(), [&](const Track& track) { return lies_on(track, place, reach); });
 }
 
-std::vector<FlankSample> slab_of(const SectionFit& at, int k, double half) {
-    const QuadraticFit& fit = at.flank[k].fit;
-    const SectionWindow& window = at.flank[k].window;
+// The scan's points on flank k of a fitted section, up to `half` mm to each side of it.
+std::vector<FlankSample> slab_of(const Tracker& tracker, const SectionFit& at, int k, double half) {
+    const Flank& flank = at.flank[k];
     const SectionFrame& f = at.frame;
-    std::vector<FlankSample> slab;
-    for (std::size_t i = 0; i < fit.size(); ++i) {
-        const double u = fit.u(i) * window.away, s = fit.s(i) * window.along;
-        if (std::abs(s) <= half && fit.weight(i) > 0) {
-            const Eigen::Vector3d p = f.p + u * f.d[k] + s * f.t + fit.z(i) * f.n[k];
-            slab.push_back({p.cast<float>(), static_cast<float>(u)});
+    const SectionWindow& w = flank.window;
+    Eigen::Vector3d low = f.p, high = f.p;
+    for (const double u : {w.band, w.away}) {
+        for (const double s : {-half, half}) {
+            for (const double side : {-1.0, 1.0}) {
+                const double z = side * gate(flank, u, s) - residual(flank, u, s, 0);
+                const Eigen::Vector3d corner = f.p + u * f.d[k] + s * f.t + z * f.n[k];
+                low = low.cwiseMin(corner);
+                high = high.cwiseMax(corner);
+            }
         }
     }
+    std::vector<FlankSample> slab;
+    tracker.grid.for_cells_in_box(low, high, [&](std::size_t cell) {
+        const auto points = tracker.grid.points(cell);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Eigen::Vector3d v = points[i].cast<double>() - f.p;
+            const double u = v.dot(f.d[k]), s = v.dot(f.t);
+            if (std::abs(s) > half || u < w.band || u > w.away) {
+                continue;
+            }
+            const double off = residual(flank, u, s, v.dot(f.n[k]));
+            if (std::abs(off) <= gate(flank, u, s)) {
+                const auto& starts = tracker.view_starts;
+                const auto source = tracker.grid.source(tracker.grid.first_point(cell) + i);
+                const auto view = std::upper_bound(starts.begin(), starts.end(), source) - starts.begin();
+                slab.push_back(
+                    {points[i], static_cast<float>(u), static_cast<float>(off), static_cast<std::uint32_t>(view)});
+            }
+        }
+    });
     return slab;
 }
 
@@ -112,7 +135,7 @@ std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) con
         point.support[k] = fit->flank[k].slab_points;
         point.flank_scale[k] = fit->flank[k].fit.scale();
         point.flank_sigma[k] = fit->flank[k].sigma;
-        point.slab[k] = slab_of(*fit, k, 0.5 * step);
+        point.slab[k] = slab_of(*this, *fit, k, 0.5 * step);
     }
     return point;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "stages/extract/creases.hpp"
@@ -8,10 +10,12 @@
 
 namespace seampath::detail {
 
-/// A scan point of a flank, and how far from the seam it lies, mm.
+/// A scan point of a flank.
 struct FlankSample {
     Eigen::Vector3f p;
-    float u;
+    float u;             ///< mm, how far from the seam it lies
+    float off;           ///< mm, off the surface that its window found
+    std::uint32_t view;  ///< of those that the scan was put together from
 };
 
 /// One measured place of a seam that is being followed.
@@ -39,6 +43,7 @@ struct Track {
 struct Tracker {
     const PointGrid& grid;
     const ScaleField& field;
+    std::span<const std::size_t> view_starts;      ///< in the order of the scan's points
     SectionWindow (*window_of)(const ScanScale&);  ///< to follow with, or to measure with
     double step = 0;                               ///< mm between track points
     double reach_further = 0;                      ///< mm by which windows are longer along the seam

@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "stages/extract/pool.hpp"
+#include "stages/extract/registration.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/surface_fit.hpp"
 
@@ -115,6 +116,7 @@ struct WholeFlank {
     SurfaceFit surface;
     std::vector<Departure> at;  ///< what is kept of the departures, and the variance of all
     std::vector<double> share;  ///< 0..1, how far each place goes by this surface and not by its own window
+    std::vector<double> shift;  ///< variance that shifts of the views make, per variance of them
     double variance = 0;        ///< typical, of the place of the seam across the flank, mm^2
 };
 
@@ -152,7 +154,7 @@ WholeFlank shrunk(const std::vector<TrackPoint>& way, int k, const Pool& pool, c
     const double independent = static_cast<double>(way.size()) / static_cast<double>(2 * pool.reach + 1);
     const double by_noise = quantile(variances, 0.5) * (1 + 1.5 / std::sqrt(independent));
     const double prior = std::max(0.0, quantile(squares, 0.5) / kMedianSquare - by_noise);
-    WholeFlank whole{surface, std::vector<Departure>(way.size(), {bend.c[0], prior}), {}, 0};
+    WholeFlank whole{surface, std::vector<Departure>(way.size(), {bend.c[0], prior}), {}, {}, 0};
     std::vector<double> total;
     for (std::size_t i = 0; i < way.size(); ++i) {
         if (found[i]) {
@@ -205,6 +207,12 @@ std::optional<WholeFlank> whole_flank(const Tracker& tracker, const std::vector<
             best = std::move(whole);
         }
     }
+    if (best) {
+        const ShiftOfSurface shift(best->surface, pool);
+        for (const TrackPoint& place : way) {
+            best->shift.push_back(shift.at(place.section.p));
+        }
+    }
     return best;
 }
 
@@ -212,11 +220,6 @@ std::optional<WholeFlank> whole_flank(const Tracker& tracker, const std::vector<
 void settle(TrackPoint& place, std::size_t i, const std::array<std::optional<WholeFlank>, 2>& whole) {
     const Eigen::Vector3d start = place.section.p, own[2] = {place.section.n1, place.section.n2};
     Eigen::Vector3d n[2] = {own[0], own[1]}, p = start;
-    double variance = 0;
-    for (int k = 0; k < 2; ++k) {
-        const double share = whole[k] ? whole[k]->share[i] : 0;
-        variance += (1 - share) * std::pow(place.flank_sigma[k], 2) + (whole[k] ? share * whole[k]->at[i].variance : 0);
-    }
     for (int round = 0; round < 8; ++round) {
         Eigen::Vector2d off;
         for (int k = 0; k < 2; ++k) {
@@ -239,17 +242,31 @@ void settle(TrackPoint& place, std::size_t i, const std::array<std::optional<Who
     place.section = {p, n[0], n[1]};
     place.t = axis.normalized();
     place.bend = std::atan2(axis.norm(), n[0].dot(n[1]));
-    place.sigma = std::sqrt(variance) / std::max(1e-6, axis.norm());
+}
+
+// Variance of the place across flank k: what noise leaves and, which no fit sees, what the views' shifts do.
+double variance_across(const TrackPoint& place, std::size_t i, int k, const std::optional<WholeFlank>& whole,
+                       double window_shift, double registration) {
+    const double share = whole ? whole->share[i] : 0, shifts = registration * registration;
+    const double own = std::pow(place.flank_sigma[k], 2) + shifts * window_shift;
+    return (1 - share) * own + (whole ? share * (whole->at[i].variance + shifts * whole->shift[i]) : 0);
 }
 
 }  // namespace
 
-void settle_on_whole_flanks(const Tracker& tracker, std::vector<TrackPoint>& way) {
+void settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
     const std::array<std::optional<WholeFlank>, 2> whole{whole_flank(tracker, way, 0), whole_flank(tracker, way, 1)};
-    for (std::size_t i = 0; i < way.size() && (whole[0] || whole[1]); ++i) {
-        if (!way[i].modelled || (whole[0] && whole[1])) {
-            settle(way[i], i, whole);
+    const std::vector<double> shift[2] = {shift_of_windows(tracker, way, 0), shift_of_windows(tracker, way, 1)};
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        if (way[i].modelled && !(whole[0] && whole[1])) {
+            continue;
         }
+        settle(way[i], i, whole);
+        double variance = 0;
+        for (int k = 0; k < 2; ++k) {
+            variance += variance_across(way[i], i, k, whole[k], shift[k][i], registration);
+        }
+        way[i].sigma = std::sqrt(variance) / std::max(1e-6, std::sin(way[i].bend));
     }
 }
 

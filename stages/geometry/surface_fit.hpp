@@ -39,6 +39,10 @@ public:
     double unit() const { return unit_; }
     /// 1-sigma of the surface's own place at p, mm.
     double sigma(const Eigen::Vector3d& p) const;
+    /// Derivative of the distance at p by the parameters, and how far the parameters follow the points: the step that
+    /// errors e of the points make is -cofactors() * sum of weight * e * row.
+    Row row(const Eigen::Vector3d& p) const;
+    const Matrix& cofactors() const { return cofactors_; }
     /// Weight of a point in the fit, 0..1.
     double weight(const Eigen::Vector3d& p) const;
 
@@ -49,7 +53,6 @@ public:
 
 private:
     void set_frame(const Eigen::Vector3d& origin);
-    Row row(const Eigen::Vector3d& p) const;
     void move(const Row& step);
     bool gauss_newton(std::span<const Eigen::Vector3d> points, double& largest_step);
     void measure_scale(std::span<const Eigen::Vector3d> points, double least_scale);

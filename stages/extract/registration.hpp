@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "stages/extract/pool.hpp"
+#include "stages/geometry/surface_fit.hpp"
+
+/// What the views' registration against each other does to a seam. Each view is shifted by an error of its own, and no
+/// fit over all of them sees the mean of it: only from how much views differ can it be told.
+namespace seampath::detail {
+
+/// How far the points of two views lie apart on one stretch of a flank, times the same on the next stretch: noise has
+/// changed from one to the other, the shifts of the views have not.
+struct ViewDifferences {
+    double products = 0, pairs = 0;
+};
+
+/// Adds those of both flanks of a measured way.
+void add_differences(ViewDifferences& sum, const std::vector<TrackPoint>& way);
+
+/// 1-sigma of a view's shift along any one direction, mm; 0 where views differ by no more than their noise, or there is
+/// one.
+double registration_of(const ViewDifferences& sum);
+
+/// Variance, per variance of the shifts, with which shifts of the views move flank k as it is measured at each place by
+/// its own window: the sum of squares of the views' shares of the points.
+std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<TrackPoint>& way, int k);
+
+/// The same for a surface fitted to all of the flank's points.
+class ShiftOfSurface {
+public:
+    ShiftOfSurface(const SurfaceFit& surface, const Pool& pool);
+    double at(const Eigen::Vector3d& p) const;
+
+private:
+    using Influence = Eigen::Matrix<double, SurfaceFit::kMostParameters, 3>;
+    const SurfaceFit& surface_;
+    std::vector<Influence> influence_;  ///< of each view's shift on the parameters
+};
+
+}  // namespace seampath::detail
