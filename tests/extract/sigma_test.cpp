@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include "tests/extract/support.hpp"
+
+/// A seam's sigma is a promise: errors keep it over many scans, whether noise makes them or the views' registration.
+namespace seampath {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A corner along the x axis, put together from views with white noise, each shifted by N(0, registration) per axis.
+Scan views_of_corner(std::uint64_t seed, int views, double registration) {
+    std::vector<Eigen::Vector3f> points;
+    const Random random(seed, 77);
+    for (int v = 0; v < views; ++v) {
+        const auto draw = static_cast<std::uint64_t>(3 * v);
+        const Eigen::Vector3f shift =
+            (registration * Vector3d(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2)))
+                .cast<float>();
+        const std::size_t begin = points.size();
+        for (double x = 0; x < 45; x += 0.5) {  // row by row, as a scanner
+            const Sampling sampling{0.5, 0.045, seed * 100 + static_cast<std::uint64_t>(v)};
+            add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.5, Vector3d::UnitY(), 20, sampling);
+            add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.5, Vector3d::UnitZ(), 20, sampling);
+        }
+        std::for_each(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(), [&](auto& p) { p += shift; });
+    }
+    return scan_of_points(std::move(points));
+}
+
+struct Coverage {
+    double one = 0, two = 0, registration = 0;
+};
+
+/// Shares of points within 1 and 2 sigma of the true seam, over 30 scans.
+Coverage coverage(int views, double registration) {
+    constexpr std::uint64_t kScans = 30;
+    Coverage sum;
+    double points = 0, squares = 0;
+    for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
+        const Extraction extraction = extract(views_of_corner(seed, views, registration), {});
+        EXPECT_EQ(extraction.seams.size(), 1u) << seed;
+        EXPECT_EQ(extraction.views, views) << seed;
+        squares += std::pow(extraction.registration_mm, 2) / static_cast<double>(kScans);
+        for (const Seam& seam : extraction.seams) {
+            for (const SeamPoint& point : seam.points) {
+                const double error = point.p.tail<2>().norm();
+                sum.one += error < point.sigma_mm;
+                sum.two += error < 2 * point.sigma_mm;
+                points += 1;
+            }
+        }
+    }
+    sum.one /= points;
+    sum.two /= points;
+    sum.registration = std::sqrt(squares);
+    return sum;
+}
+
+// A point lies off its seam in two directions: of such errors 63 % are within one sigma (the root of both variances)
+// and 98 % within two when the two are alike, 68 % and 95 % when one of them is all. All points of a scan share the
+// views' shifts, so that 30 scans are 30 draws and a share is sure to 9 %.
+TEST(Sigma, HoldsWhereViewsAreShifted) {
+    const Coverage c = coverage(4, 0.015);
+    EXPECT_NEAR(c.registration, 0.015, 0.002);
+    EXPECT_GT(c.one, 0.54);
+    EXPECT_LT(c.one, 0.78);
+    EXPECT_GT(c.two, 0.90);
+}
+
+TEST(Sigma, OfOneViewIsThatOfItsNoise) {
+    const Coverage c = coverage(1, 0);
+    EXPECT_EQ(c.registration, 0);
+    EXPECT_GT(c.one, 0.54);
+    EXPECT_LT(c.one, 0.80);
+    EXPECT_GT(c.two, 0.90);
+}
+
+}  // namespace
+}  // namespace seampath

@@ -1,0 +1,47 @@
+#include "stages/geometry/views.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/geometry/clouds.hpp"
+
+/// Views told from the order of the points.
+namespace seampath {
+namespace {
+
+using Eigen::Vector3d;
+using testing::ElementsAre;
+
+/// A view of a corner, row by row along x, as far as `to`.
+void add_view(std::vector<Eigen::Vector3f>& points, double to, std::uint64_t seed) {
+    const Sampling sampling{0.4, 0.03, seed};
+    for (double x = 0; x < to; x += 0.4) {
+        add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.4, Vector3d::UnitY(), 30, sampling);
+        add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.4, Vector3d::UnitZ(), 30, sampling);
+    }
+}
+
+TEST(Views, BeginWherePointsComeBack) {
+    std::vector<Eigen::Vector3f> points;
+    std::vector<std::size_t> begin;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        begin.push_back(points.size());
+        add_view(points, seed == 3 ? 50 : 80, seed);
+    }
+    const auto starts = view_starts(points);
+    ASSERT_EQ(starts.size(), begin.size());
+    for (std::size_t i = 0; i < begin.size(); ++i) {
+        EXPECT_NEAR(static_cast<double>(starts[i]), static_cast<double>(begin[i]), 1500) << i;  // ten rows
+    }
+}
+
+TEST(Views, OneViewIsOne) {
+    std::vector<Eigen::Vector3f> points;
+    add_view(points, 80, 1);
+    EXPECT_THAT(view_starts(points), ElementsAre(0));
+    EXPECT_THAT(view_starts({}), ElementsAre(0));
+    EXPECT_THAT(view_starts(std::vector<Eigen::Vector3f>(5000, Eigen::Vector3f::Zero())).front(), 0u);
+}
+
+}  // namespace
+}  // namespace seampath
