@@ -246,6 +246,7 @@ std::optional<WholeFlank> whole_flank(const Tracker& tracker, const std::vector<
     const double least = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
     std::optional<WholeFlank> best;
     std::vector<double> local;
+    local.reserve(way.size());
     for (const TrackPoint& place : way) {
         local.push_back(place.flank_sigma[k] * place.flank_sigma[k]);
     }
