@@ -166,10 +166,12 @@ void make_consistent(Surfels& surfels) {
 // share of deciding rays in the largest piece.
 double turn_outwards(Surfels& surfels, const PointGrid& grid) {
     std::vector<Surfel>& at = surfels.at;
-    const Eigen::Vector3d low = std::accumulate(
-        at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
-    const Eigen::Vector3d high = std::accumulate(
-        at.begin(), at.end(), at.front().p, [](Eigen::Vector3d m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
+    const Eigen::Vector3d low =
+        std::accumulate(at.begin(), at.end(), at.front().p,
+                        [](const Eigen::Vector3d& m, const Surfel& s) { return m.cwiseMin(s.p).eval(); });
+    const Eigen::Vector3d high =
+        std::accumulate(at.begin(), at.end(), at.front().p,
+                        [](const Eigen::Vector3d& m, const Surfel& s) { return m.cwiseMax(s.p).eval(); });
     const double reach = std::min((high - low).norm(), 400 * grid.cell());
     const double start = 2 * grid.cell();  // past the surfel's own surface, not past a thin wall's other face
     const std::size_t stride = std::max<std::size_t>(1, at.size() / 4000);

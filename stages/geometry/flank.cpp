@@ -289,7 +289,7 @@ double edge_across(const FlankPoints& samples, const ScanScale& scale, const Sec
 FlankPoints within_ends(const FlankPoints& samples, const ScanScale& scale, const SectionWindow& w) {
     FlankPoints kept;
     kept.share = samples.share;
-    double reach[2];
+    double reach[2] = {};
     for (const int way : {0, 1}) {
         std::vector<double> s;
         for (const FlankPoint& x : samples.points) {

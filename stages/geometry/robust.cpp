@@ -10,8 +10,8 @@ constexpr int kRounds = 6;
 }  // namespace
 
 bool QuadraticFit::least_squares() {
-    // Moments first: the normal matrix of a quadratic in two variables has 15 different entries. Written out, since most
-    // of the time of a measurement is spent here.
+    // Moments first: the normal matrix of a quadratic in two variables has 15 different entries. Written out, since
+    // most of the time of a measurement is spent here.
     double m[5][5] = {}, z[3][3] = {};
     for (std::size_t i = 0; i < z_.size(); ++i) {
         const double w = weight_[i], u = u_[i], s = s_[i], x = straight_[i];

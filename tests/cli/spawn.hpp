@@ -32,6 +32,7 @@ public:
     explicit Process(std::vector<std::string> arguments, const std::function<void()>& in_child = {}) {
         arguments.insert(arguments.begin(), SEAMPATH_PROGRAM);
         std::vector<char*> words;
+        words.reserve(arguments.size() + 1);
         for (auto& argument : arguments) {
             words.push_back(argument.data());
         }

@@ -117,6 +117,7 @@ TEST(NoSeam, InAFogOfPoints) {
 
 TEST(NoSeam, OnALineOfPoints) {
     std::vector<Eigen::Vector3f> points;
+    points.reserve(3000);
     for (int i = 0; i < 3000; ++i) {
         points.emplace_back(0.1f * static_cast<float>(i), 0.f, 0.f);
     }

@@ -18,6 +18,7 @@ std::vector<Eigen::Vector3f> plane(double pitch, double sigma) {
 /// A raster with noise that a Gaussian kernel of so many pixels' width ties together, of standard deviation sigma.
 std::vector<Eigen::Vector3f> correlated_plane(double pitch, double sigma, double width) {
     constexpr int kColumns = 240, kRows = 200, kReach = 6;
+    constexpr std::ptrdiff_t kWide = kColumns + 2 * kReach;
     const Random random(9, 0);
     double squares = 0;
     const auto kernel = [&](int dx, int dy) { return std::exp(-(dx * dx + dy * dy) / (2 * width * width)); };
@@ -26,7 +27,7 @@ std::vector<Eigen::Vector3f> correlated_plane(double pitch, double sigma, double
             squares += kernel(dx, dy) * kernel(dx, dy);
         }
     }
-    std::vector<double> white((kColumns + 2 * kReach) * (kRows + 2 * kReach));
+    std::vector<double> white(kWide * (kRows + 2 * kReach));
     for (std::size_t i = 0; i < white.size(); ++i) {
         white[i] = random.normal(i);
     }
@@ -36,8 +37,7 @@ std::vector<Eigen::Vector3f> correlated_plane(double pitch, double sigma, double
             double z = 0;
             for (int dy = -kReach; dy <= kReach; ++dy) {
                 for (int dx = -kReach; dx <= kReach; ++dx) {
-                    z += kernel(dx, dy) *
-                         white[static_cast<std::size_t>((y + dy + kReach) * (kColumns + 2 * kReach) + x + dx + kReach)];
+                    z += kernel(dx, dy) * white[static_cast<std::size_t>((y + dy + kReach) * kWide + x + dx + kReach)];
                 }
             }
             points.emplace_back(static_cast<float>(x * pitch), static_cast<float>(y * pitch),
