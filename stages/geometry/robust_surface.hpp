@@ -194,8 +194,9 @@ private:
 
     // Covariance of an M-estimator (Huber 1981) by blocks, so that errors which the points of a block share count as
     // often as they are shared: by how much the surface moves when a block is left out (the jackknife, as CR3 in Bell &
-    // McCaffrey 2002). Few blocks tell little of a matrix: theirs is mixed with the one for independent errors, made as
-    // large as they say, which counts as much as the fewest blocks that tell any.
+    // McCaffrey 2002). It is up to a tenth too large where few blocks have much leverage, which makes up for how
+    // unsure it is there. Few blocks tell little of a matrix: theirs is mixed with the one for independent errors,
+    // made as large as they say, which counts as much as the fewest blocks that tell any.
     void find_covariance(std::span<const std::uint32_t> block) {
         constexpr int n = kParameters;
         const Sums s = sums();
