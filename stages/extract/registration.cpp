@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 
+#include <Eigen/Cholesky>
+
 namespace seampath::detail {
 namespace {
 
@@ -76,15 +78,20 @@ std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<T
     return variance;
 }
 
+// A shift b of a view changes the distances of its points by -n.b: the normal equations with that on their right side.
 ShiftOfSurface::ShiftOfSurface(const SurfaceFit& surface, const Pool& pool) : surface_(surface) {
+    const int n = surface.parameters();
+    SurfaceFit::Matrix normal = SurfaceFit::Matrix::Zero(n, n);
     std::map<std::uint32_t, Influence> sums;
     for (std::size_t i = 0; i < pool.points.size(); ++i) {
-        const auto [sum, fresh] = sums.try_emplace(pool.view[i], Influence::Zero());
-        sum->second +=
-            surface.weight(pool.points[i]) * surface.row(pool.points[i]) * surface.normal(pool.points[i]).transpose();
+        const SurfaceFit::Vector row = surface.weight(pool.points[i]) * surface.row(pool.points[i]);
+        normal += row * surface.row(pool.points[i]).transpose();
+        const auto [sum, fresh] = sums.try_emplace(pool.view[i], Influence::Zero(n, 3));
+        sum->second += row * surface.normal(pool.points[i]).transpose();
     }
+    const Eigen::LDLT<SurfaceFit::Matrix> ldlt(normal);
     for (const auto& [view, sum] : sums) {
-        influence_.push_back(surface.cofactors() * sum);
+        influence_.push_back(ldlt.solve(sum));
     }
 }
 

@@ -33,7 +33,7 @@ public:
     double at(const Eigen::Vector3d& p) const;
 
 private:
-    using Influence = Eigen::Matrix<double, SurfaceFit::kMostParameters, 3>;
+    using Influence = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, SurfaceFit::kMostParameters, 3>;
     const SurfaceFit& surface_;
     std::vector<Influence> influence_;  ///< of each view's shift on the parameters
 };

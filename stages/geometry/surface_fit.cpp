@@ -5,256 +5,224 @@
 
 #include <Eigen/Dense>
 
-#include "stages/geometry/robust.hpp"
+#include "stages/geometry/robust_surface.hpp"
 
 namespace seampath {
 namespace {
 
-constexpr double kTukey = 4.685;
-constexpr double kMadToSigma = 1.4826;
-constexpr int kMostRounds = 60;
-constexpr double kSettled = 1e-9;  // of the scale: what a further step may move
-constexpr double kLeastTurn =
-    0.02;  // rad, rms, of normals about their mean: below it a cylinder is no more than a plane
+using Eigen::Vector3d;
+using Points = std::span<const Vector3d>;
+using Blocks = std::span<const std::uint32_t>;
 
-double tukey_weight(double x) {
-    return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
+constexpr double kCertain = 4;       // sigmas
+constexpr double kLeastTurn = 0.02;  // rad, rms, of normals about their mean: below it a curved surface is a plane
+
+template <class S>
+SurfaceFit result_of(const detail::RobustSurface<S>& solver, bool bore) {
+    return {solver.shape, bore, solver.frame, solver.covariance, solver.scale, solver.share_taken};
 }
 
-double tukey_slope(double x) {
-    return std::abs(x) < 1 ? (1 - x * x) * (1 - 5 * x * x) : 0;
+// 1-sigma of a function of the shape.
+template <class S, class Function>
+double sigma_of(const detail::RobustSurface<S>& fit, const Function& f) {
+    typename detail::RobustSurface<S>::Row gradient, step;
+    const double h = 1e-4 * fit.frame.length;
+    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+        step.setZero();
+        step[i] = h;
+        gradient[i] = (f(moved(fit.shape, fit.frame, step)) - f(moved(fit.shape, fit.frame, -step))) / (2 * h);
+    }
+    return std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
 }
 
-Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+// The larger principal curvature, of a cone as far from its apex as the origin is.
+double curvature(const Cylinder& s, const Vector3d&) {
+    return 1 / s.radius;
+}
+double curvature(const Cone& s, const Vector3d& origin) {
+    return std::cos(s.half_angle) / (std::abs((origin - s.apex).dot(s.axis)) * std::tan(s.half_angle));
+}
+double curvature(const Sphere& s, const Vector3d&) {
+    return 1 / s.radius;
+}
+
+// A cone without half angle is a cylinder.
+template <class S>
+bool has_opening(const detail::RobustSurface<S>& fit) {
+    if constexpr (std::is_same_v<S, Cone>) {
+        return fit.shape.half_angle > kCertain * sigma_of(fit, [](const Cone& s) { return s.half_angle; });
+    }
+    return true;
+}
+
+// Where the outward normal is roughly known.
+struct Hints {
+    Points places, normals;
+    bool turn() const {
+        return places.size() >= 3 && places.size() == normals.size() &&
+               detail::scatter_of(normals, detail::mean_of(normals)).trace() > kLeastTurn * kLeastTurn;
+    }
+};
+
+// Begins at a curved surface.
+template <class S>
+std::optional<SurfaceFit> settled(const std::optional<S>& start, Points points, Blocks block, const Hints& hints,
+                                  double least_scale) {
+    if (!start) {
+        return std::nullopt;
+    }
+    detail::RobustSurface<S> solver(*start, points, least_scale);
+    if (!solver.fit(block)) {
+        return std::nullopt;
+    }
+    const auto bend = [&](const S& s) { return curvature(s, solver.frame.origin); };
+    const double k = bend(solver.shape);
+    const bool is_curved = k > kCertain * sigma_of(solver, bend), is_noise = 1 / k < kCertain * solver.scale;
+    if (!is_curved || is_noise || !has_opening(solver)) {
+        return std::nullopt;
+    }
+    double outwards = 0;
+    for (std::size_t i = 0; i < hints.places.size(); ++i) {
+        outwards += outward_normal(solver.shape, hints.places[i]).dot(hints.normals[i]);
+    }
+    return result_of(solver, outwards < 0);
+}
+
+// Linear least squares of y over rows of N numbers.
+template <int N>
+struct LinearFit {
+    Eigen::Matrix<double, N, N> A = Eigen::Matrix<double, N, N>::Zero();
+    Eigen::Matrix<double, N, 1> b = Eigen::Matrix<double, N, 1>::Zero();
+
+    void add(const Eigen::Matrix<double, N, 1>& x, double y) {
+        A += x * x.transpose();
+        b += x * y;
+    }
+    Eigen::Matrix<double, N, 1> solve() const { return A.ldlt().solve(b); }
+};
+
+// The starts are algebraic (Kasa 1976): of a circle |q|^2 = 2 c.q + (r^2 - |c|^2), linear in what is asked. Biased, but
+// close.
+std::optional<Cylinder> cylinder_along(Points points, const Vector3d& axis) {
+    const Vector3d e0 = axis.unitOrthogonal(), e1 = axis.cross(e0), centroid = detail::mean_of(points);
+    LinearFit<3> circle;
     for (const auto& p : points) {
-        sum += p;
+        const Vector3d v = p - centroid, q(v.dot(e0), v.dot(e1), 0);
+        circle.add(q + Vector3d::UnitZ(), q.squaredNorm());
     }
-    return sum / static_cast<double>(points.size());
-}
-
-Eigen::Matrix3d scatter_of(std::span<const Eigen::Vector3d> v, const Eigen::Vector3d& about) {
-    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-    for (const auto& x : v) {
-        scatter += (x - about) * (x - about).transpose();
-    }
-    return scatter / static_cast<double>(v.size());
-}
-
-// Circle x^2 + y^2 + a x + b y + c = 0 through points in the plane of e (Kasa): a beginning, biased but close.
-std::optional<Cylinder> circle_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& axis) {
-    const Eigen::Vector3d e0 = axis.unitOrthogonal(), e1 = axis.cross(e0), centroid = mean_of(points);
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const auto& p : points) {
-        const Eigen::Vector3d row((p - centroid).dot(e0), (p - centroid).dot(e1), 1);
-        A += row * row.transpose();
-        right -= row * row.head<2>().squaredNorm();
-    }
-    const Eigen::Vector3d c = A.ldlt().solve(right);
-    const double squared = c.head<2>().squaredNorm() / 4 - c[2];
+    const Vector3d c = circle.solve();
+    const double squared = c.head<2>().squaredNorm() / 4 + c[2];
     if (!(squared > 0) || !std::isfinite(squared)) {
         return std::nullopt;
     }
-    return Cylinder{centroid - 0.5 * (c[0] * e0 + c[1] * e1), axis, std::sqrt(squared)};
+    return Cylinder{centroid + 0.5 * (c[0] * e0 + c[1] * e1), axis, std::sqrt(squared)};
+}
+
+std::optional<Sphere> sphere_through(Points points) {
+    const Vector3d centroid = detail::mean_of(points);
+    LinearFit<4> sphere;
+    for (const auto& p : points) {
+        const Vector3d v = p - centroid;
+        sphere.add((Eigen::Vector4d() << v, 1).finished(), v.squaredNorm());
+    }
+    const Eigen::Vector4d c = sphere.solve();
+    const double squared = c.head<3>().squaredNorm() / 4 + c[3];
+    if (!(squared > 0) || !std::isfinite(squared)) {
+        return std::nullopt;
+    }
+    return Sphere{centroid + 0.5 * c.head<3>(), std::sqrt(squared)};
+}
+
+// With h along the axis, of a given half angle: |q|^2 - tan^2 h^2 = 2 c.q - 2 tan^2 h0 h + const, h0 that of the apex.
+std::optional<Cone> cone_along(Points points, Vector3d axis, double half_angle) {
+    const Vector3d e0 = axis.unitOrthogonal(), e1 = axis.cross(e0), centroid = detail::mean_of(points);
+    const double slope = std::tan(half_angle) * std::tan(half_angle);
+    LinearFit<4> cone;
+    for (const auto& p : points) {
+        const Vector3d v = p - centroid;
+        const Eigen::Vector4d x(v.dot(e0), v.dot(e1), v.dot(axis), 1);
+        cone.add(x, x.head<2>().squaredNorm() - slope * x[2] * x[2]);
+    }
+    const Eigen::Vector4d c = cone.solve();
+    const double apex = -c[2] / (2 * slope);
+    if (!std::isfinite(apex)) {
+        return std::nullopt;
+    }
+    return Cone{centroid + 0.5 * (c[0] * e0 + c[1] * e1) + apex * axis, apex < 0 ? axis : Vector3d(-axis), half_angle};
+}
+
+Vector3d least_direction(const Eigen::Matrix3d& scatter) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
 }
 
 }  // namespace
 
-double SurfaceFit::distance(const Eigen::Vector3d& p) const {
+double SurfaceFit::distance(const Vector3d& p) const {
     return side_ * std::visit([&](const auto& s) { return signed_distance(s, p); }, shape_);
 }
 
-Eigen::Vector3d SurfaceFit::normal(const Eigen::Vector3d& p) const {
+Vector3d SurfaceFit::normal(const Vector3d& p) const {
     return side_ * std::visit([&](const auto& s) { return outward_normal(s, p); }, shape_);
 }
 
-void SurfaceFit::set_frame(const Eigen::Vector3d& origin) {
-    origin_ = origin;
-    const Eigen::Vector3d direction =
-        std::holds_alternative<Plane>(shape_) ? std::get<Plane>(shape_).normal : std::get<Cylinder>(shape_).axis;
-    e_[0] = direction.unitOrthogonal();
-    e_[1] = direction.cross(e_[0]);
-    if (auto* plane = std::get_if<Plane>(&shape_)) {
-        plane->point = origin - (origin - plane->point).dot(plane->normal) * plane->normal;
-    } else {
-        auto& cylinder = std::get<Cylinder>(shape_);
-        cylinder.point += (origin - cylinder.point).dot(cylinder.axis) * cylinder.axis;
-    }
+double SurfaceFit::weight(const Vector3d& p) const {
+    return detail::tukey_weight(distance(p) / (detail::kTukey * scale_));
 }
 
-// Derivative of the (unsigned side's) distance by the parameters. Plane: offset along the normal, two tilts about the
-// origin. Cylinder: two shifts of the axis, two tilts of it about the origin, the radius. Tilts are lengths over
-// length_.
-SurfaceFit::Row SurfaceFit::row(const Eigen::Vector3d& p) const {
-    Row r = Row::Zero();
-    const Eigen::Vector3d v = p - origin_;
-    if (std::holds_alternative<Plane>(shape_)) {
-        r.head<3>() << -1, v.dot(e_[0]) / length_, v.dot(e_[1]) / length_;
-        return r;
-    }
-    const auto& cylinder = std::get<Cylinder>(shape_);
-    const Eigen::Vector3d n = outward_normal(cylinder, p);
-    const double a = -n.dot(e_[0]), b = -n.dot(e_[1]), h = v.dot(cylinder.axis) / length_;
-    r << a, b, a * h, b * h, -1;
-    return r;
+SurfaceFit::Vector SurfaceFit::row(const Vector3d& p) const {
+    return std::visit([&](const auto& s) -> Vector { return seampath::row(s, frame_, p).by; }, shape_);
 }
 
-void SurfaceFit::move(const Row& step) {
-    if (auto* plane = std::get_if<Plane>(&shape_)) {
-        plane->point += step[0] * plane->normal;
-        plane->normal = (plane->normal + (step[1] * e_[0] + step[2] * e_[1]) / length_).normalized();
-    } else {
-        auto& cylinder = std::get<Cylinder>(shape_);
-        cylinder.point += step[0] * e_[0] + step[1] * e_[1];
-        cylinder.axis = (cylinder.axis + (step[2] * e_[0] + step[3] * e_[1]) / length_).normalized();
-        cylinder.radius += step[4];
-    }
-    set_frame(origin_);
+double SurfaceFit::sigma(const Vector3d& p) const {
+    const Vector r = row(p);
+    return std::sqrt(std::max(0.0, r.dot(covariance_ * r)));
 }
 
-double SurfaceFit::weight(const Eigen::Vector3d& p) const {
-    return scale_ > 0 ? tukey_weight(distance(p) / (kTukey * scale_)) : 1;
+SurfaceFit::Shape SurfaceFit::moved(const Vector& step) const {
+    return std::visit([&](const auto& s) -> Shape { return seampath::moved(s, frame_, step); }, shape_);
 }
 
-void SurfaceFit::measure_scale(std::span<const Eigen::Vector3d> points, double least_scale) {
-    std::vector<double> magnitude;
-    magnitude.reserve(points.size());
-    for (const auto& p : points) {
-        magnitude.push_back(std::abs(distance(p)));
-    }
-    const double n = static_cast<double>(points.size());
-    scale_ = std::max(least_scale, kMadToSigma * quantile(magnitude, 0.5) * std::sqrt(n / (n - parameters())));
-}
-
-bool SurfaceFit::gauss_newton(std::span<const Eigen::Vector3d> points, double& largest_step) {
-    const int n = parameters();
-    Matrix normal = Matrix::Zero();
-    Row right = Row::Zero();
-    for (const auto& p : points) {
-        const double d = side_ * distance(p), w = scale_ > 0 ? tukey_weight(d / (kTukey * scale_)) : 1;
-        if (w > 0) {
-            const Row r = row(p);
-            normal.selfadjointView<Eigen::Lower>().rankUpdate(r, w);
-            right -= w * d * r;
-        }
-    }
-    const Eigen::MatrixXd A = Matrix(normal.selfadjointView<Eigen::Lower>()).topLeftCorner(n, n);
-    const Eigen::LDLT<Eigen::MatrixXd> ldlt(A);
-    const auto pivots = ldlt.vectorD();
-    if (ldlt.info() != Eigen::Success || !(pivots.minCoeff() > 1e-13 * pivots.maxCoeff())) {
-        return false;
-    }
-    Row step = Row::Zero();
-    step.head(n) = ldlt.solve(right.head(n));
-    largest_step = step.cwiseAbs().maxCoeff();
-    if (!step.allFinite() || largest_step > 10 * length_) {
-        return false;
-    }
-    move(step);
-    return parameters() == 3 || std::get<Cylinder>(shape_).radius > 0;
-}
-
-// Covariance of an M-estimator (Huber 1981): bread from the slope of the influence function, filling from the sums of
-// influences over blocks, so that errors which the points of a block share count as often as they are shared.
-void SurfaceFit::finish(std::span<const Eigen::Vector3d> points, std::span<const std::uint32_t> block) {
-    const int n = parameters();
-    Matrix bread = Matrix::Zero();
-    std::vector<Row> sums;
-    double taken = 0, squares = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double d = side_ * distance(points[i]), x = scale_ > 0 ? d / (kTukey * scale_) : 0;
-        const double w = tukey_weight(x);
-        if (w == 0) {
-            continue;
-        }
-        const Row r = row(points[i]);
-        bread.selfadjointView<Eigen::Lower>().rankUpdate(r, tukey_slope(x));
-        if (block[i] >= sums.size()) {
-            sums.resize(block[i] + 1, Row::Zero());
-        }
-        sums[block[i]] += w * d * r;
-        squares += w * d * w * d;
-        taken += 1;
-    }
-    share_taken_ = taken / static_cast<double>(points.size());
-    const Eigen::MatrixXd A = Matrix(bread.selfadjointView<Eigen::Lower>()).topLeftCorner(n, n);
-    cofactors_.setZero();
-    cofactors_.topLeftCorner(n, n) = A.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-    double shared = 0, blocks = 0;
-    for (const Row& sum : sums) {
-        shared += sum.dot(cofactors_ * sum);
-        blocks += sum.squaredNorm() > 0;
-    }
-    const double independent = squares / std::max(1.0, taken);
-    // The fit takes n degrees of freedom from the sums.
-    const double factor = blocks > n + 1 ? shared / n * blocks / (blocks - n) : independent;
-    unit_ = std::sqrt(std::max(independent, factor));
-}
-
-double SurfaceFit::sigma(const Eigen::Vector3d& p) const {
-    const Row r = row(p);
-    return unit_ * std::sqrt(std::max(0.0, r.dot(cofactors_ * r)));
-}
-
-bool SurfaceFit::fit(std::span<const Eigen::Vector3d> points, std::span<const std::uint32_t> block,
-                     double least_scale) {
-    if (points.size() < 4 * static_cast<std::size_t>(parameters())) {
-        return false;
-    }
-    const Eigen::Vector3d centroid = mean_of(points);
-    length_ = std::sqrt(scatter_of(points, centroid).trace());
-    if (!(length_ > 0)) {
-        return false;
-    }
-    set_frame(centroid);
-    for (int round = 0; round < kMostRounds; ++round) {
-        measure_scale(points, least_scale);
-        double largest_step = 0;
-        if (!gauss_newton(points, largest_step)) {
-            return false;
-        }
-        if (largest_step <= kSettled * std::max(scale_, 1e-6 * length_)) {
-            finish(points, block);
-            return true;
-        }
-    }
-    return false;
-}
-
-std::optional<SurfaceFit> fit_plane(std::span<const Eigen::Vector3d> points, std::span<const std::uint32_t> block,
-                                    const Eigen::Vector3d& outward, double least_scale) {
-    if (points.size() < 12) {
+std::optional<SurfaceFit> fit_plane(Points points, Blocks block, const Vector3d& outward, double least_scale) {
+    if (points.empty()) {
         return std::nullopt;
     }
-    const Eigen::Vector3d centroid = mean_of(points);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter_of(points, centroid));
-    const Eigen::Vector3d n = solver.eigenvectors().col(0);
-    SurfaceFit result(Plane{centroid, n.dot(outward) < 0 ? Eigen::Vector3d(-n) : n}, false);
-    return result.fit(points, block, least_scale) ? std::optional(result) : std::nullopt;
+    const Vector3d centroid = detail::mean_of(points);
+    const Eigen::Matrix3d scatter = detail::scatter_of(points, centroid);
+    const Vector3d n = least_direction(scatter);
+    detail::RobustSurface<Plane> solver({centroid, n.dot(outward) < 0 ? Vector3d(-n) : n}, points, least_scale);
+    if (!solver.fit(block)) {
+        return std::nullopt;
+    }
+    // Across a line of points there is nothing but their noise.
+    const double width = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[1]);
+    return width > kCertain * solver.scale ? std::optional(result_of(solver, false)) : std::nullopt;
 }
 
-std::optional<SurfaceFit> fit_cylinder(std::span<const Eigen::Vector3d> points, std::span<const std::uint32_t> block,
-                                       std::span<const Eigen::Vector3d> places,
-                                       std::span<const Eigen::Vector3d> normals, double least_scale) {
-    if (points.size() < 20) {
+std::optional<SurfaceFit> fit_cylinder(Points points, Blocks block, Points places, Points normals, double least_scale) {
+    const Hints hints{places, normals};
+    if (points.empty() || !hints.turn()) {
         return std::nullopt;
     }
-    const Eigen::Vector3d mean = mean_of(normals);
-    if (scatter_of(normals, mean).trace() < kLeastTurn * kLeastTurn) {
+    const Vector3d axis = least_direction(detail::scatter_of(normals, Vector3d::Zero()));
+    return settled(cylinder_along(points, axis), points, block, hints, least_scale);
+}
+
+std::optional<SurfaceFit> fit_cone(Points points, Blocks block, Points places, Points normals, double least_scale) {
+    const Hints hints{places, normals};
+    if (points.empty() || !hints.turn()) {
         return std::nullopt;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter_of(normals, Eigen::Vector3d::Zero()));
-    const auto cylinder = circle_along(points, solver.eigenvectors().col(0));
-    if (!cylinder) {
+    const Vector3d mean = detail::mean_of(normals), axis = least_direction(detail::scatter_of(normals, mean));
+    const double half_angle = std::asin(std::min(1.0, std::abs(mean.dot(axis))));
+    return settled(cone_along(points, axis, half_angle), points, block, hints, least_scale);
+}
+
+std::optional<SurfaceFit> fit_sphere(Points points, Blocks block, Points places, Points normals, double least_scale) {
+    const Hints hints{places, normals};
+    if (points.empty() || !hints.turn()) {
         return std::nullopt;
     }
-    double outwards = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        outwards += outward_normal(*cylinder, places[i]).dot(normals[i]);
-    }
-    SurfaceFit result(*cylinder, outwards < 0);
-    return result.fit(points, block, least_scale) ? std::optional(result) : std::nullopt;
+    return settled(sphere_through(points), points, block, hints, least_scale);
 }
 
 }  // namespace seampath
