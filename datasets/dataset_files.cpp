@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <fstream>
@@ -7,6 +8,7 @@
 #include "datasets/dataset.hpp"
 #include "pipeline/fields.hpp"
 #include "pipeline/files.hpp"
+#include "pipeline/text.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -21,8 +23,23 @@ constexpr std::array<std::pair<const char*, Member>, 4> kColumns{{{"points_mm", 
                                                                   {"n1", &TruthPoint::n1},
                                                                   {"n2", &TruthPoint::n2}}};
 
+constexpr std::array<std::pair<const char*, double Groove::*>, 8> kGrooveKeys{
+    {{"gap_mm", &Groove::gap_mm},
+     {"mismatch_mm", &Groove::mismatch_mm},
+     {"root_face_mm", &Groove::root_face_mm},
+     {"depth_mm", &Groove::depth_mm},
+     {"bevel_1_deg", &Groove::bevel_1_deg},
+     {"bevel_2_deg", &Groove::bevel_2_deg},
+     {"included_angle_deg", &Groove::included_angle_deg},
+     {"area_mm2", &Groove::area_mm2}}};
+
 ordered_json to_json(const TruthSeam& seam) {
-    ordered_json object{{"closed", seam.closed}};
+    ordered_json object{{"closed", seam.closed}, {"kind", name(seam.kind)}};
+    if (seam.groove) {
+        for (const auto& [key, member] : kGrooveKeys) {
+            object["groove"][key] = (*seam.groove).*member;
+        }
+    }
     for (const auto& [key, member] : kColumns) {
         ordered_json rows = ordered_json::array();
         for (const TruthPoint& point : seam.points) {
@@ -65,6 +82,29 @@ std::vector<TruthPoint> read_points(const ordered_json& seam) {
     return points;
 }
 
+JointKind read_kind(const ordered_json& kind) {
+    const auto found = std::find(kJointKindNames.begin(), kJointKindNames.end(), kind.get<std::string>());
+    if (found == kJointKindNames.end()) {
+        throw InputError("dataset: there is no joint kind " + kind.dump() + "; there are " + join(kJointKindNames));
+    }
+    return static_cast<JointKind>(found - kJointKindNames.begin());
+}
+
+TruthSeam read_seam(const ordered_json& json) {
+    TruthSeam seam{json.at("closed").get<bool>(), read_points(json), JointKind::fillet, {}};
+    if (json.contains("kind")) {  // files of before there were other joints have none
+        seam.kind = read_kind(json.at("kind"));
+    }
+    if (json.contains("groove")) {
+        Groove groove;
+        for (const auto& [key, member] : kGrooveKeys) {
+            groove.*member = json.at("groove").at(key).get<double>();
+        }
+        seam.groove = groove;
+    }
+    return seam;
+}
+
 std::string ply_header(const Dataset& dataset) {
     return "ply\nformat binary_little_endian 1.0\ncomment lengths in mm\nelement vertex " +
            std::to_string(dataset.points.size()) +
@@ -105,7 +145,7 @@ Truth read_truth(const std::filesystem::path& file) {
         }
         Truth truth;
         for (const ordered_json& seam : json.at("seams")) {
-            truth.seams.push_back({seam.at("closed").get<bool>(), read_points(seam)});
+            truth.seams.push_back(read_seam(seam));
         }
         return truth;
     } catch (const ordered_json::exception& problem) {

@@ -54,28 +54,34 @@ Sight look(const Scene& scene, const Station& station, std::uint32_t column, std
     return {hit->t / stretch, -n.dot(ray.direction), n.cast<float>()};
 }
 
-const TruthPoint& nearest_truth(const Truth& truth, const Vector3d& p) {
-    const TruthPoint* best = &truth.seams.front().points.front();
+/// Flanks that face each other; the tops of a butt joint and the sides of an outer corner send each other no light.
+bool is_concave(const TruthSeam& seam) {
+    return seam.kind != JointKind::butt && seam.kind != JointKind::corner;
+}
+
+/// The point of the concave seams nearest to p; null where there is no such seam.
+const TruthPoint* nearest_concave(const Truth& truth, const Vector3d& p) {
+    const TruthPoint* best = nullptr;
     for (const TruthSeam& seam : truth.seams) {
         for (const TruthPoint& point : seam.points) {
-            if ((point.p - p).squaredNorm() < (best->p - p).squaredNorm()) {
+            if (is_concave(seam) && (!best || (point.p - p).squaredNorm() < (best->p - p).squaredNorm())) {
                 best = &point;
             }
         }
     }
-    return *best;
+    return best;
 }
 
 /// Light that went to the point by way of the other flank: it seems to come from the mirror image of the point in the
-/// plane that halves the joint. Points away from the joint stay where they are.
+/// plane that halves the joint. Points away from a concave joint stay where they are.
 Vector3d ghost(const Truth& truth, const Vector3d& p, const Random& random, std::size_t pixel) {
-    const TruthPoint& seam = nearest_truth(truth, p);
-    if ((p - seam.p).norm() > kGhostReach) {
+    const TruthPoint* seam = nearest_concave(truth, p);
+    if (!seam || (p - seam->p).norm() > kGhostReach) {
         return p;
     }
-    const Vector3d across = (seam.n1 - seam.n2).normalized();
+    const Vector3d across = (seam->n1 - seam->n2).normalized();
     const Vector3d spread(random.normal(4 * pixel + 1), random.normal(4 * pixel + 2), random.normal(4 * pixel + 3));
-    return p - 2 * across.dot(p - seam.p) * across + kGhostSigma * spread;
+    return p - 2 * across.dot(p - seam->p) * across + kGhostSigma * spread;
 }
 
 /// Errors of the whole view: the sensor's scale, and where it thinks that it stands.

@@ -1,94 +1,18 @@
 #include "datasets/scenes.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <functional>
-#include <string>
 
 #include "datasets/portable_math.hpp"
+#include "datasets/scene_parts.hpp"
 #include "stages/error.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
-namespace {
 
 using Eigen::Vector3d;
 using portable::kPi;
 using portable::radians;
-
-constexpr double kTruthSpacing = 0.095;  // mm; the promise is 0.1
-
-std::string text(double value) {
-    char buffer[32];
-    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
-void require(bool holds, const std::string& what) {
-    if (!holds) {
-        throw InputError("dataset: " + what);
-    }
-}
-
-/// A solid is what lies inside all its faces.
-void add_solid(Scene& scene, const std::vector<Shape>& faces) {
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        std::vector<Shape> others = faces;
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-        scene.surfaces.push_back({faces[i], std::move(others)});
-    }
-}
-
-void add_block(Scene& scene, const Vector3d& low, const Vector3d& high) {
-    std::vector<Shape> faces;
-    for (int axis = 0; axis < 3; ++axis) {
-        faces.push_back(Plane{high, Vector3d::Unit(axis)});
-        faces.push_back(Plane{low, -Vector3d::Unit(axis)});
-    }
-    add_solid(scene, faces);
-    scene.box.extend(low);
-    scene.box.extend(high);
-}
-
-/// A round bar from s = 0 to s = length along the axis.
-void add_bar(Scene& scene, const Cylinder& cylinder, double length) {
-    const Vector3d end = cylinder.p + length * cylinder.axis;
-    add_solid(scene, {cylinder, Plane{end, cylinder.axis}, Plane{cylinder.p, -cylinder.axis}});
-    const Vector3d reach = cylinder.radius * (Vector3d::Ones() - cylinder.axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
-    for (const Vector3d& centre : {cylinder.p, end}) {
-        scene.box.extend(centre - reach);
-        scene.box.extend(centre + reach);
-    }
-}
-
-void add_plate(Scene& scene, double half_x, double half_y, const SceneOptions& o) {
-    add_block(scene, {-half_x, -half_y, -*o.plate_thickness_mm}, {half_x, half_y, 0});
-}
-
-/// Position and normals of a seam at a parameter.
-struct CurvePoint {
-    Vector3d p, n1, n2;
-};
-using SeamCurve = std::function<CurvePoint(double)>;
-
-/// Points at equal steps of the parameter, so many that none are further apart than promised, in the direction n1 x n2.
-void add_seam(Scene& scene, bool closed, double begin, double end, const SeamCurve& curve) {
-    const int kProbe = 2048;
-    double longest = 0;
-    for (int i = 0; i < kProbe; ++i) {
-        const auto at = [&](int k) { return curve(begin + (end - begin) * k / kProbe).p; };
-        longest = std::max(longest, (at(i + 1) - at(i)).norm());
-    }
-    const int steps = static_cast<int>(std::ceil(longest * kProbe / kTruthSpacing));
-    TruthSeam seam{closed, {}};
-    for (int i = 0; i < steps + (closed ? 0 : 1); ++i) {
-        const CurvePoint c = curve(begin + (end - begin) * i / steps);
-        seam.points.push_back({c.p, c.n1.cross(c.n2).normalized(), c.n1, c.n2});
-    }
-    if ((seam.points[1].p - seam.points[0].p).dot(seam.points[0].tangent) < 0) {
-        std::reverse(seam.points.begin(), seam.points.end());
-    }
-    scene.truth.seams.push_back(std::move(seam));
-}
 
 /// Web flush with the plate's ends, leaning to +y.
 Scene make_tee(const SceneOptions& o) {
@@ -106,12 +30,14 @@ Scene make_tee(const SceneOptions& o) {
     scene.front = Vector3d::UnitY();
     for (const double sign : {1.0, -1.0}) {
         scene.box.extend(*o.height_mm * up + sign * half_thickness * side);
-        add_seam(scene, false, -half_length, half_length, [&](double x) {
+        add_seam(scene, JointKind::fillet, false, -half_length, half_length, [&](double x) {
             return CurvePoint{{x, sign * half_thickness / c, 0}, Vector3d::UnitZ(), sign * side};
         });
     }
     return scene;
 }
+
+namespace {
 
 Scene make_s_curve(const SceneOptions& o) {
     const double half_length = *o.length_mm / 2;
@@ -129,7 +55,7 @@ Scene make_s_curve(const SceneOptions& o) {
     scene.box.extend(Vector3d(0, 0, *o.height_mm));
     scene.front = Vector3d::UnitY();
     for (const SineWall& wall : {left, right}) {
-        add_seam(scene, false, -half_length, half_length, [&](double x) {
+        add_seam(scene, JointKind::fillet, false, -half_length, half_length, [&](double x) {
             const Vector3d p(x, wall.offset + wall.amplitude * portable::sin(wave_number * x), 0);
             return CurvePoint{p, Vector3d::UnitZ(), normal(wall, p)};
         });
@@ -167,8 +93,9 @@ Scene make_box_on_plate(const SceneOptions& o) {
     const double half_y = *o.width_mm / 2;
     const double radius = *o.corner_radius_mm;
     const double height = *o.height_mm;
-    require(radius > 0 && radius < std::min(half_x, half_y),
-            "corner radius " + text(radius) + " mm does not fit the box; use one between 0 and half its shorter side");
+    require(
+        radius > 0 && radius < std::min(half_x, half_y),
+        "corner radius " + shortest(radius) + " mm does not fit the box; use one between 0 and half its shorter side");
     Scene scene;
     add_plate(scene, half_x + *o.margin_mm, half_y + *o.margin_mm, o);
     add_block(scene, {-half_x, -half_y + radius, 0}, {half_x, half_y - radius, height});
@@ -179,7 +106,8 @@ Scene make_box_on_plate(const SceneOptions& o) {
         }
     }
     const double around = 4 * (half_x + half_y - 2 * radius) + 2 * kPi * radius;
-    add_seam(scene, true, 0, around, [&](double s) { return box_outline(half_x, half_y, radius, s); });
+    add_seam(scene, JointKind::fillet, true, 0, around,
+             [&](double s) { return box_outline(half_x, half_y, radius, s); });
     return scene;
 }
 
@@ -216,7 +144,7 @@ Scene make_pipe_on_plate(const SceneOptions& o) {
     scene.box.extend(
         end + Vector3d(branch.radius * branch.cos_lean, branch.radius, branch.radius * std::abs(branch.sin_lean)));
     scene.box.extend(end - Vector3d(branch.radius * branch.cos_lean, branch.radius, 0));
-    add_seam(scene, true, 0, 2 * kPi, [&](double angle) {
+    add_seam(scene, JointKind::fillet, true, 0, 2 * kPi, [&](double angle) {
         const auto phi = portable::sincos(angle);
         return CurvePoint{branch.at_height(phi, 0), Vector3d::UnitZ(), branch.radial(phi)};
     });
@@ -227,8 +155,8 @@ Scene make_pipe_on_pipe(const SceneOptions& o) {
     const Branch branch = make_branch(o);
     const double header = *o.header_radius_mm;
     require(branch.radius + std::abs(branch.offset) < header,
-            "branch radius " + text(branch.radius) + " mm and offset " + text(branch.offset) +
-                " mm together reach beyond the header's radius " + text(header) + " mm; make them smaller than it");
+            "branch radius " + shortest(branch.radius) + " mm and offset " + shortest(branch.offset) +
+                " mm together reach beyond the header's radius " + shortest(header) + " mm; make them smaller than it");
     const auto seam = [&](double angle) {
         const auto phi = portable::sincos(angle);
         const double y = branch.offset + branch.radius * phi.sin;
@@ -246,16 +174,23 @@ Scene make_pipe_on_pipe(const SceneOptions& o) {
     const double half_length = *o.header_length_mm / 2;
     const double middle = (around.min().x() + around.max().x()) / 2;
     require(half_length > around.sizes().x() / 2,
-            "header length " + text(2 * half_length) + " mm is shorter than the branch is wide; make it longer");
+            "header length " + shortest(2 * half_length) + " mm is shorter than the branch is wide; make it longer");
     add_bar(scene, {{middle - half_length, 0, 0}, Vector3d::UnitX(), header}, 2 * half_length);
     add_bar(scene, {{0, branch.offset, 0}, branch.axis(), branch.radius}, highest + *o.height_mm);
-    add_seam(scene, true, 0, 2 * kPi, seam);
+    add_seam(scene, JointKind::saddle, true, 0, 2 * kPi, seam);
     return scene;
+}
+
+bool follows_course(const SceneOptions& o) {
+    return (o.kind >= SceneKind::lap && o.kind <= SceneKind::corner) ||
+           (o.kind == SceneKind::spatter && o.spattered == Spattered::lap);
 }
 
 }  // namespace
 
 Scene make_scene(const SceneOptions& options) {
+    require(options.course == Course::straight || follows_course(options),
+            "scene " + std::string(name(options.kind)) + " has a course of its own; leave scene.course at straight");
     switch (options.kind) {
         case SceneKind::tee:
             return make_tee(options);
@@ -269,6 +204,20 @@ Scene make_scene(const SceneOptions& options) {
         case SceneKind::pipe_on_pipe_oblique:
         case SceneKind::pipe_on_pipe_equal:
             return make_pipe_on_pipe(options);
+        case SceneKind::lap:
+            return make_lap(options);
+        case SceneKind::butt:
+            return make_butt(options);
+        case SceneKind::v_groove:
+            return make_v_groove(options);
+        case SceneKind::corner:
+            return make_corner(options);
+        case SceneKind::multi:
+            return make_multi(options);
+        case SceneKind::plain:
+            return make_plain(options);
+        case SceneKind::spatter:
+            return make_spatter(options);
     }
     ensure(false, "every scene kind can be made");
     return {};

@@ -16,6 +16,7 @@ constexpr double kStep = 0.25;  // mm between the places at which a reported cur
 struct Polyline {
     bool closed;
     std::vector<Vector3d> points;
+    JointKind kind;
 
     std::size_t segments() const { return points.size() - (closed ? 0 : 1); }
     const Vector3d& after(std::size_t i) const { return points[(i + 1) % points.size()]; }
@@ -38,7 +39,7 @@ struct TrueCurve {
 std::vector<TrueCurve> true_curves(const Truth& truth) {
     std::vector<TrueCurve> curves;
     for (const TruthSeam& seam : truth.seams) {
-        TrueCurve curve{seam, {seam.closed, {}}, {}, 0};
+        TrueCurve curve{seam, {seam.closed, {}, seam.kind}, {}, 0};
         for (const TruthPoint& point : seam.points) {
             curve.line.points.push_back(point.p);
         }
@@ -102,16 +103,21 @@ bool corresponds(const TrueCurve& curve, const Foot& foot) {
            foot.station <= curve.length + kCorrespondence;
 }
 
-/// Distance from the nearest true seam, or infinity where none corresponds.
-double distance_from_truth(const std::vector<TrueCurve>& curves, const Vector3d& p) {
+/// The nearest true seam, at an infinite distance where none corresponds.
+struct Match {
     double distance = std::numeric_limits<double>::infinity();
+    JointKind kind{};
+};
+
+Match match(const std::vector<TrueCurve>& curves, const Vector3d& p) {
+    Match nearest;
     for (const TrueCurve& curve : curves) {
         const Foot f = foot(curve, p);
-        if (corresponds(curve, f)) {
-            distance = std::min(distance, f.distance);
+        if (corresponds(curve, f) && f.distance < nearest.distance) {
+            nearest = {f.distance, curve.seam.kind};
         }
     }
-    return distance;
+    return nearest;
 }
 
 double distance_from_line(const Polyline& line, const Vector3d& p) {
@@ -159,17 +165,25 @@ double found_length(const TrueCurve& curve, const std::vector<Polyline>& lines) 
     return found;
 }
 
-/// Length of the reported curves that corresponds to a true seam, and that does not.
-std::pair<double, double> true_and_false_length(const std::vector<TrueCurve>& curves,
-                                                const std::vector<Polyline>& lines) {
-    std::pair<double, double> lengths{0, 0};
+/// Length of the reported curves that corresponds to a true seam, that does so under another kind of joint, and that
+/// does not.
+struct Lengths {
+    double of_seams = 0;
+    double of_wrong_kind = 0;
+    double of_nothing = 0;
+};
+
+Lengths reported_lengths(const std::vector<TrueCurve>& curves, const std::vector<Polyline>& lines) {
+    Lengths lengths;
     for (const Polyline& line : lines) {
         for (std::size_t i = 0; i < line.segments(); ++i) {
             const int pieces = static_cast<int>(std::ceil(line.length(i) / kStep));
             for (int k = 0; k < pieces; ++k) {
                 const Vector3d middle = line.points[i] + (k + 0.5) / pieces * (line.after(i) - line.points[i]);
-                const bool is_true = std::isfinite(distance_from_truth(curves, middle));
-                (is_true ? lengths.first : lengths.second) += line.length(i) / pieces;
+                const Match seam = match(curves, middle);
+                const bool is_true = std::isfinite(seam.distance);
+                (is_true ? lengths.of_seams : lengths.of_nothing) += line.length(i) / pieces;
+                lengths.of_wrong_kind += is_true && seam.kind != line.kind ? line.length(i) / pieces : 0;
             }
         }
     }
@@ -199,7 +213,7 @@ Score compare(const std::vector<Polyline>& lines, const Truth& truth) {
     std::vector<std::pair<double, double>> distances;
     for (const Polyline& line : lines) {
         for (std::size_t i = 0; i < line.points.size(); ++i) {
-            const double distance = distance_from_truth(curves, line.points[i]);
+            const double distance = match(curves, line.points[i]).distance;
             if (std::isfinite(distance)) {
                 distances.emplace_back(distance, line.weight(i));
             }
@@ -216,10 +230,16 @@ Score compare(const std::vector<Polyline>& lines, const Truth& truth) {
             score.end_errors_mm.push_back(end_error(curve, curve.length, lines));
         }
     }
-    const auto [true_length, false_length] = true_and_false_length(curves, lines);
+    const Lengths reported = reported_lengths(curves, lines);
+    if (curves.empty()) {
+        score.found = 1;
+        score.false_share = reported.of_nothing > 0 ? std::numeric_limits<double>::infinity() : 0;
+        return score;
+    }
     score.found = found / length;
-    score.false_share = false_length / length;
-    score.repeated_share = std::max(0.0, true_length - found) / length;
+    score.false_share = reported.of_nothing / length;
+    score.repeated_share = std::max(0.0, reported.of_seams - found) / length;
+    score.wrong_kind_share = reported.of_wrong_kind / length;
     return score;
 }
 
@@ -228,7 +248,7 @@ Score compare(const std::vector<Polyline>& lines, const Truth& truth) {
 Score score(std::span<const Seam> seams, const Truth& truth) {
     std::vector<Polyline> lines;
     for (const Seam& seam : seams) {
-        Polyline line{seam.closed, {}};
+        Polyline line{seam.closed, {}, seam.kind};
         for (const SeamPoint& point : seam.points) {
             line.points.push_back(point.p);
         }
@@ -242,7 +262,7 @@ Score score(std::span<const SeamModel> models, const Truth& truth) {
     for (const SeamModel& model : models) {
         const ArcLength arc(model.curve);
         const int steps = std::max(1, static_cast<int>(std::ceil(arc.length() / kStep)));
-        Polyline line{model.closed, {}};
+        Polyline line{model.closed, {}, model.kind};
         for (int i = 0; i < steps + (model.closed ? 0 : 1); ++i) {
             line.points.push_back(position(model.curve, arc.parameter(arc.length() * i / steps)));
         }

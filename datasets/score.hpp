@@ -14,7 +14,8 @@ inline constexpr double kCorrespondence = 1.5;  // mm
 /// How a result compares with the truth. Distances are from the points of the reported curves to the true curve (not to
 /// its samples), each point weighted by the length that it stands for; they cover the parts that correspond to a true
 /// seam. An open seam is taken to go on straight beyond its ends by the range of correspondence: reaching too far is an
-/// error of the ends, not of the curve.
+/// error of the ends, not of the curve. Where there is no true seam at all, everything is found, and the false share of
+/// whatever is reported is infinite.
 struct Score {
     double rms_mm = 0;
     double p95_mm = 0;
@@ -24,6 +25,8 @@ struct Score {
     double repeated_share = 0;          ///< length reported more than once, over the true length
     std::vector<double> end_errors_mm;  ///< first and last end of each open true seam: distance along the seam to the
                                         ///< nearest end of a reported curve; the seam's length when there is none
+    double wrong_kind_share = 0;        ///< length near a true seam, reported as another kind of joint than the seam
+                                        ///< is, over the true length
 };
 
 /// Compares extracted seams, by their points.

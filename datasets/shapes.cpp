@@ -18,11 +18,45 @@ double value(const Plane& plane, const Vector3d& p) {
 
 double value(const Cylinder& cylinder, const Vector3d& p) {
     const Vector3d d = p - cylinder.p;
-    return (d - d.dot(cylinder.axis) * cylinder.axis).norm() - cylinder.radius;
+    return cylinder.side * ((d - d.dot(cylinder.axis) * cylinder.axis).norm() - cylinder.radius);
+}
+
+double value(const Cone& cone, const Vector3d& p) {
+    const Vector3d d = p - cone.p;
+    const double s = d.dot(cone.axis);
+    return cone.side * ((d - s * cone.axis).norm() * cone.cos - s * cone.sin);
+}
+
+double value(const Sphere& sphere, const Vector3d& p) {
+    return (p - sphere.p).norm() - sphere.radius;
 }
 
 double value(const SineWall& wall, const Vector3d& p) {
     return wall.side * (p.y() - wall.offset - wall.amplitude * portable::sin(wall.wave_number * p.x()));
+}
+
+Vector3d normal_of(const Plane& plane, const Vector3d&) {
+    return plane.n;
+}
+
+Vector3d normal_of(const Cylinder& cylinder, const Vector3d& p) {
+    const Vector3d d = p - cylinder.p;
+    return cylinder.side * (d - d.dot(cylinder.axis) * cylinder.axis).normalized();
+}
+
+Vector3d normal_of(const Cone& cone, const Vector3d& p) {
+    const Vector3d d = p - cone.p;
+    const Vector3d radial = (d - d.dot(cone.axis) * cone.axis).normalized();
+    return cone.side * (cone.cos * radial - cone.sin * cone.axis);
+}
+
+Vector3d normal_of(const Sphere& sphere, const Vector3d& p) {
+    return (p - sphere.p).normalized();
+}
+
+Vector3d normal_of(const SineWall& wall, const Vector3d& p) {
+    const double slope = wall.amplitude * wall.wave_number * portable::cos(wall.wave_number * p.x());
+    return wall.side * Vector3d(-slope, 1, 0).normalized();
 }
 
 bool is_inside(const Surface& surface, const Vector3d& p) {
@@ -68,6 +102,47 @@ bool cross(const Cylinder& cylinder, const Surface& surface, const Ray& ray, Nea
         return false;
     }
     const double half = std::sqrt(rest / a);
+    return nearest.offer(surface, middle - half) || nearest.offer(surface, middle + half);
+}
+
+/// With r the distance from the axis and s the way along it, r^2 cos^2 - s^2 sin^2 = a t^2 + 2 b t + c; of its roots,
+/// those on the other nappe (s < 0) are none of the cone's.
+bool cross(const Cone& cone, const Surface& surface, const Ray& ray, Nearest& nearest) {
+    // From the point of the ray nearest to the apex: no cancellation however far the origin lies.
+    const double middle = (cone.p - ray.origin).dot(ray.direction);
+    const Vector3d o = ray.origin + middle * ray.direction - cone.p;
+    const double s = o.dot(cone.axis);
+    const double slope = ray.direction.dot(cone.axis);
+    const Vector3d radial = o - s * cone.axis;
+    const Vector3d radial_slope = ray.direction - slope * cone.axis;
+    const double cos2 = cone.cos * cone.cos;
+    const double sin2 = cone.sin * cone.sin;
+    const double a = radial_slope.squaredNorm() * cos2 - slope * slope * sin2;
+    const double b = radial.dot(radial_slope) * cos2 - s * slope * sin2;
+    const double c = radial.squaredNorm() * cos2 - s * s * sin2;
+    const double square = b * b - a * c;
+    if (square < 0) {
+        return false;
+    }
+    // A root that does not exist (a = 0 or q = 0) comes out as no finite number, and is refused.
+    const double q = -(b + std::copysign(std::sqrt(square), b));
+    const double one = q / a;
+    const double other = c / q;
+    bool hit = false;
+    for (const double t : {std::min(one, other), std::max(one, other)}) {
+        hit = hit || (s + t * slope > 0 && nearest.offer(surface, middle + t));
+    }
+    return hit;
+}
+
+bool cross(const Sphere& sphere, const Surface& surface, const Ray& ray, Nearest& nearest) {
+    const double middle = (sphere.p - ray.origin).dot(ray.direction);
+    const double square =
+        sphere.radius * sphere.radius - (ray.origin + middle * ray.direction - sphere.p).squaredNorm();
+    if (square < 0) {
+        return false;
+    }
+    const double half = std::sqrt(square);
     return nearest.offer(surface, middle - half) || nearest.offer(surface, middle + half);
 }
 
@@ -183,16 +258,7 @@ double signed_value(const Shape& shape, const Eigen::Vector3d& p) {
 }
 
 Eigen::Vector3d normal(const Shape& shape, const Eigen::Vector3d& p) {
-    if (const auto* plane = std::get_if<Plane>(&shape)) {
-        return plane->n;
-    }
-    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-        const Eigen::Vector3d d = p - cylinder->p;
-        return (d - d.dot(cylinder->axis) * cylinder->axis).normalized();
-    }
-    const auto& wall = std::get<SineWall>(shape);
-    const double slope = wall.amplitude * wall.wave_number * portable::cos(wall.wave_number * p.x());
-    return wall.side * Eigen::Vector3d(-slope, 1, 0).normalized();
+    return std::visit([&](const auto& s) { return normal_of(s, p); }, shape);
 }
 
 std::optional<Hit> first_hit(const std::vector<Surface>& surfaces, const Ray& ray, double limit) {

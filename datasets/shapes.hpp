@@ -16,10 +16,26 @@ struct Plane {
     Eigen::Vector3d n;
 };
 
-/// Round bar around the line p + s axis (axis unit).
+/// Around the line p + s axis (axis unit); the material lies inside for side = +1 (a bar), outside for side = -1 (a
+/// bore).
 struct Cylinder {
     Eigen::Vector3d p;
     Eigen::Vector3d axis;
+    double radius;
+    double side = 1;
+};
+
+/// From the apex p along the axis (unit), by the half-angle with this sine and cosine; the material lies inside for
+/// side = +1, outside for side = -1.
+struct Cone {
+    Eigen::Vector3d p;
+    Eigen::Vector3d axis;
+    double sin, cos;
+    double side = 1;
+};
+
+struct Sphere {
+    Eigen::Vector3d p;
     double radius;
 };
 
@@ -32,7 +48,7 @@ struct SineWall {
     double side;
 };
 
-using Shape = std::variant<Plane, Cylinder, SineWall>;
+using Shape = std::variant<Plane, Cylinder, Cone, Sphere, SineWall>;
 
 /// Keeps what lies on the inner side of the shape.
 struct Surface {
@@ -40,8 +56,9 @@ struct Surface {
     std::vector<Shape> inside_of;  ///< the surface ends where it leaves one of these
 };
 
-/// Signed value that vanishes on the shape and is positive outside the material, mm. It is the distance for planes and
-/// cylinders, the distance along y for a sine wall.
+/// Signed value that vanishes on the shape and is positive outside the material, mm. It is the distance from the
+/// surface, except from a sine wall (the distance along y) and before a cone's apex (the distance from the cone's
+/// lines, drawn out).
 double signed_value(const Shape& shape, const Eigen::Vector3d& p);
 
 /// Unit normal, out of the material, at a point of the shape.

@@ -1,3 +1,4 @@
+#include <array>
 #include <iostream>
 #include <memory>
 
@@ -16,6 +17,23 @@ struct Arguments {
     std::uint64_t seed = 1;
     std::string out;
     std::vector<std::string> set;
+};
+
+constexpr std::array<std::string_view, kSceneNames.size()> kSceneMeanings{
+    "web on a plate, both sides",
+    "web along an S-curve on a plate, both sides",
+    "closed box with round corners on a plate",
+    "leaning pipe on a plate",
+    "pipe on a thicker pipe, upright",
+    "pipe on a thicker pipe, leaning and offset",
+    "pipe on a pipe that is hardly thicker",
+    "plate lapped on another; straight, arc or S-curve",
+    "plates edge to edge, with gap and mismatch; straight or arc",
+    "single V or, with scene.single_bevel, single bevel; straight or arc",
+    "outer corner of two plates; straight or arc",
+    "lap, stiffener, pipe and corner on one plate: five seams",
+    "machined plate with steps and holes, without any joint",
+    "tee or lap (scene.spattered) under spatter and tack welds",
 };
 
 SceneKind scene_kind(const std::string& scene) {
@@ -49,7 +67,12 @@ int make(const Arguments& given) {
 int list() {
     SceneOptions scene;
     ScannerOptions scanner = preset("standard");
-    std::cout << "scenes:  " << join(kSceneNames) << "\npresets: " << join(kPresetNames)
+    std::vector<std::vector<std::string>> scenes;
+    for (std::size_t i = 0; i < kSceneNames.size(); ++i) {
+        scenes.push_back({"  " + std::string(kSceneNames[i]), std::string(kSceneMeanings[i])});
+    }
+    std::cout << "scenes:\n"
+              << aligned(scenes) << "\npresets: " << join(kPresetNames)
               << "\n\nWhat --set takes, with the values of preset standard:\n\n"
               << options_table({{"scene", describe(scene)}, {"scanner", describe(scanner)}});
     return kPass;
@@ -77,7 +100,7 @@ Command dataset_command(CLI::App& program) {
         "Examples:\n"
         "  seampath dataset make tee --out data/tee\n"
         "  seampath dataset make pipe-on-pipe --preset standard --seed 3 --out data/pipe3\n"
-        "  seampath dataset make tee --set scene.lean_deg=20 --set scanner.sigma_mm=0.1 --out data/tee20\n");
+        "  seampath dataset make v-groove --set scene.course=arc --set scene.gap_mm=2 --out data/groove\n");
     return {app, [given, list_app] { return list_app->parsed() ? list() : make(*given); }};
 }
 

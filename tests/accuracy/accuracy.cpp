@@ -19,8 +19,11 @@ constexpr const char* kHeader =
     "scene                seed   points n  rms    p95    max     rms    p95    max     %      %      %      mm     "
     "1sig   2sig   rms    cover  ok  extract  all\n";
 
+/// Of the scenes, those that stand first are fillets and saddles.
+constexpr auto kConcave = static_cast<std::ptrdiff_t>(SceneKind::lap);
+
 struct Asked {
-    std::vector<std::string> scenes{kSceneNames.begin(), kSceneNames.end()};
+    std::vector<std::string> scenes{kSceneNames.begin(), kSceneNames.begin() + kConcave};
     std::uint64_t first_seed = 1;
     int seeds = 5;
     std::string preset = "standard";
@@ -112,7 +115,7 @@ int run(const Asked& asked) {
 int main(int argc, char** argv) {
     CLI::App app("Measures made scans of known truth: how far are seams and models from it?");
     Asked asked;
-    app.add_option("--scenes", asked.scenes, "scenes to make; default: all")
+    app.add_option("--scenes", asked.scenes, "scenes to make; default: those of fillets and saddles")
         ->delimiter(',')
         ->check(CLI::IsMember(std::vector<std::string>(kSceneNames.begin(), kSceneNames.end())));
     app.add_option("--seeds", asked.seeds, "scans of each scene")->check(CLI::PositiveNumber)->capture_default_str();

@@ -1,5 +1,6 @@
 #include "datasets/score.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -21,6 +22,7 @@ Truth truth_of(SceneKind kind) {
 /// Every tenth true point from `begin` to `end`, moved by `shift` along the first flank's normal.
 Seam report(const TruthSeam& seam, double shift = 0, double begin = 0, double end = 1) {
     Seam reported;
+    reported.kind = seam.kind;
     reported.closed = seam.closed && begin == 0 && end == 1;
     const auto n = static_cast<double>(seam.points.size());
     for (auto i = static_cast<std::size_t>(begin * n); i < static_cast<std::size_t>(end * n); i += 10) {
@@ -42,26 +44,30 @@ std::vector<Seam> report_all(const Truth& truth, double shift = 0) {
     return seams;
 }
 
-class ScoreOfScene : public testing::TestWithParam<int> {};
+class ScoreOfScene : public testing::TestWithParam<SceneOptions> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ScoreOfScene, all_scenes(), scene_test_name);
 
 TEST_P(ScoreOfScene, TruthIsPerfect) {
-    const Truth truth = truth_of(static_cast<SceneKind>(GetParam()));
+    const Truth truth = make_scene(resolved(GetParam(), 1)).truth;
     const Score s = score(report_all(truth), truth);
     EXPECT_LT(s.max_mm, 1e-9);
     EXPECT_NEAR(s.found, 1, 1e-9);
     EXPECT_EQ(s.false_share, 0);
     EXPECT_NEAR(s.repeated_share, 0, 1e-4);
     EXPECT_THAT(s.end_errors_mm, Each(DoubleNear(0, 1e-9)));
-    EXPECT_THAT(s.end_errors_mm, SizeIs(truth.seams[0].closed ? 0 : 2 * truth.seams.size()));
+    const auto open =
+        std::count_if(truth.seams.begin(), truth.seams.end(), [](const auto& seam) { return !seam.closed; });
+    EXPECT_THAT(s.end_errors_mm, SizeIs(static_cast<std::size_t>(2 * open)));
+    EXPECT_EQ(s.wrong_kind_share, 0);
 }
 
 TEST_P(ScoreOfScene, ShiftIsMeasured) {
-    const Truth truth = truth_of(static_cast<SceneKind>(GetParam()));
+    const Truth truth = make_scene(resolved(GetParam(), 1)).truth;
     const Score s = score(report_all(truth, 0.3), truth);
-    EXPECT_NEAR(s.rms_mm, 0.3, 1e-4);
-    EXPECT_NEAR(s.p95_mm, 0.3, 1e-4);
-    EXPECT_NEAR(s.max_mm, 0.3, 1e-4);
+    const double shift = truth.seams.empty() ? 0 : 0.3;
+    EXPECT_NEAR(s.rms_mm, shift, 1e-4);
+    EXPECT_NEAR(s.p95_mm, shift, 1e-4);
+    EXPECT_NEAR(s.max_mm, shift, 1e-4);
     EXPECT_NEAR(s.found, 1, 1e-9);
     EXPECT_EQ(s.false_share, 0);
 }
@@ -69,7 +75,7 @@ TEST_P(ScoreOfScene, ShiftIsMeasured) {
 TEST(Score, DistanceIsFromTheCurveNotFromItsSamples) {
     Truth truth = truth_of(SceneKind::box_on_plate);
     const std::vector<Seam> seams = report_all(truth);
-    TruthSeam thinned{true, {}};
+    TruthSeam thinned{true, {}, JointKind::fillet, {}};
     for (std::size_t i = 0; i + 5 < truth.seams[0].points.size(); i += 7) {
         thinned.points.push_back(truth.seams[0].points[i]);
     }
@@ -127,6 +133,37 @@ TEST(Score, NothingReportedIsNothingFound) {
     EXPECT_EQ(s.max_mm, 0);
     EXPECT_THAT(s.end_errors_mm,
                 Each(DoubleNear((truth.seams[0].points.back().p - truth.seams[0].points[0].p).norm(), 1e-9)));
+}
+
+TEST(Score, WhatIsReportedWhereThereIsNoJointIsFalse) {
+    const Truth none = truth_of(SceneKind::plain);
+    ASSERT_THAT(none.seams, SizeIs(0));
+    const Score silent = score(std::vector<Seam>{}, none);
+    EXPECT_EQ(silent.found, 1);
+    EXPECT_EQ(silent.false_share, 0);
+    EXPECT_EQ(silent.repeated_share, 0);
+    const Score wrong = score(std::vector<Seam>{report(truth_of(SceneKind::tee).seams[0])}, none);
+    EXPECT_EQ(wrong.found, 1);
+    EXPECT_TRUE(std::isinf(wrong.false_share));
+    EXPECT_EQ(wrong.max_mm, 0);
+}
+
+TEST(Score, OtherKindOfJointIsCounted) {
+    const Truth truth = truth_of(SceneKind::multi);
+    ASSERT_THAT(truth.seams, SizeIs(5));
+    std::vector<Seam> seams = report_all(truth);
+    EXPECT_EQ(score(seams, truth).wrong_kind_share, 0);
+    ASSERT_EQ(seams[0].kind, JointKind::lap);
+    seams[0].kind = JointKind::fillet;
+    const double width = (truth.seams[0].points.back().p - truth.seams[0].points.front().p).norm();
+    double closed = 0;
+    for (std::size_t i = 0; i < truth.seams[3].points.size(); ++i) {
+        const auto& points = truth.seams[3].points;
+        closed += (points[(i + 1) % points.size()].p - points[i].p).norm();
+    }
+    const Score s = score(seams, truth);
+    EXPECT_NEAR(s.wrong_kind_share, width / (4 * width + closed), 1e-6);
+    EXPECT_EQ(s.false_share, 0);
 }
 
 TEST(Score, ModelIsComparedByItsCurve) {
