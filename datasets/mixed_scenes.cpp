@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "datasets/portable_math.hpp"
 #include "datasets/scene_parts.hpp"
 #include "stages/error.hpp"

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 
 #include "datasets/course.hpp"
 #include "datasets/portable_math.hpp"
@@ -67,6 +68,9 @@ double groove_area(double gap, const GrooveSide& right, const GrooveSide& left) 
 void add_groove_plates(Scene& scene, const CourseLine& course, const SceneOptions& o, const GrooveSide& right,
                        const GrooveSide& left) {
     const double outer = course.reach() + *o.margin_mm;
+    require(std::abs(*o.mismatch_mm) < *o.plate_thickness_mm,
+            "a mismatch of " + shortest(*o.mismatch_mm) + " mm sets one plate above the other; make it smaller than " +
+                "the plates' " + shortest(*o.plate_thickness_mm) + " mm");
     for (const auto& [side, plate] : {std::pair(1.0, right), std::pair(-1.0, left)}) {
         const double across = -side * *o.gap_mm / 2;
         require(course.reach() + plate.widening() + *o.gap_mm / 2 < outer,
@@ -183,7 +187,7 @@ Scene make_corner(const SceneOptions& o) {
     add_plate_along(scene, course, {-course.reach() - spread, course.reach() + spread, -height, 0},
                     {outer, course.flank(-*o.thickness_mm / c, 0, -lean, -1)});
     scene.front = Vector3d::UnitY();
-    add_seam(scene, JointKind::corner, false, -course.half_length(), course.half_length(), [&](double x) {
+    add_seam(scene, JointKind::corner, false, -course.half_length(), course.half_length(), [&, s = s, c = c](double x) {
         const auto at = course.at(x);
         return CurvePoint{at.p, Vector3d::UnitZ(), c * at.left + s * Vector3d::UnitZ()};
     });

@@ -150,7 +150,7 @@ Fields describe(SceneOptions& o) {
         {"step_mm", &o.step_mm, "height of the steps of the plain plate", above(0)},
         {"spattered", choice(o.spattered, kSpatteredNames), "joint of the scene spatter"},
         {"spatter_per_100mm", &o.spatter_per_100mm, "spatter balls on 100 mm of seam", within(0, 1000)},
-        {"tack_spacing_mm", &o.tack_spacing_mm, "distance of tack welds along the seam", above(0)},
+        {"tack_spacing_mm", &o.tack_spacing_mm, "distance of tack welds along the seam", at_least(1)},
         {"tack_length_mm", &o.tack_length_mm, "length of a tack weld between its round ends", at_least(0)},
         {"tack_leg_mm", &o.tack_leg_mm, "reach of a tack weld on either flank", above(0)},
         {"spatter_seed", &o.spatter_seed, "where balls and tack welds are; 0: from --seed", at_least(0)}};

@@ -236,6 +236,9 @@ TEST(PlateJoints, ImpossiblePartsAreRefused) {
     o = of(SceneKind::v_groove);
     o.margin_mm = 3;
     refused(o, "wider than its plates");
+    o = of(SceneKind::butt);
+    o.mismatch_mm = -20;
+    refused(o, "a mismatch of -20 mm");
     o = of(SceneKind::corner);
     o.margin_mm = 2;
     refused(o, "make margin_mm larger");
