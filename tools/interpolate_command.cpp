@@ -226,11 +226,11 @@ Command interpolate_command(CLI::App& program) {
         "Examples:\n"
         "  seampath interpolate tests/papers/minejeva_table_4.csv --check tests/papers/minejeva_check_points.csv\n"
         "  seampath interpolate tests/papers/minejeva_table_2.csv --method newton-forward --at 1 --differences\n"
-        "  seampath interpolate seam.csv --method natural,pchip,parametric --parametrization foley --out seam.svg\n"
         "  seampath interpolate out --nodes 6,12,24 --out methods.svg     after seampath run part.ply --out out\n"
         "With --check, methods are ranked by the mean of |e|, the differences in y; distances are those from the line. "
         "On a run's seams they are ranked by the geometric mean of their rms distances; --set fit.model takes one.\n"
-        "Exit status: 0, or for a run 1 when it has no seam or no method passes on one of them; 2 bad input\n");
+        "Exit status: 0, or for a run 1 when it has no seam or on one of them even the line of least rms is out of "
+        "tolerance; 2 bad input\n");
     return {app, [given, app] {
                 const bool folder = std::filesystem::is_directory(given->table);
                 check_use(*app, folder);

@@ -76,7 +76,7 @@ std::vector<std::string> labels(std::span<const SeamComparison> comparisons) {
 }
 
 PlotAxes axes_of(std::span<const SeamComparison> comparisons) {
-    PlotAxes axes{kWidth, kHeight, 1e9, 0, 1e9, -1e9, "nodes", "rms distance, lg of mm"};
+    PlotAxes axes{kWidth, kHeight, 1e9, 0, 1e9, -1e9, "", "rms distance, lg of mm"};
     for (const SeamComparison& comparison : comparisons) {
         axes.y_low = std::min(axes.y_low, log_rms(comparison.spline.rms_mm));
         for (const SeamRanking* ranking : {&comparison.equal, &comparison.curvature}) {
@@ -97,12 +97,13 @@ PlotAxes axes_of(std::span<const SeamComparison> comparisons) {
     return axes;
 }
 
-std::string plot(const SeamRanking& ranking, const SeamComparison& comparison, const PlotAxes& axes,
-                 const std::string& title, const std::vector<std::string>& all, double x, double y) {
+std::string plot(const SeamRanking& ranking, const SeamComparison& comparison, PlotAxes axes, const std::string& title,
+                 const std::vector<std::string>& all, double x, double y) {
+    axes.x_label = title;
     std::string svg = svg_axes(axes, title);
     svg.insert(4, " x=\"" + decimal(x, 0) + "\" y=\"" + decimal(y, 0) + "\" width=\"" + decimal(kWidth, 0) +
                       "\" height=\"" + decimal(kHeight, 0) + "\"");  // after "<svg"
-    svg += svg_level(axes, log_rms(comparison.spline.rms_mm), title, "spline");
+    svg += svg_level(axes, log_rms(comparison.spline.rms_mm), "spline", "spline");
     for (const SeamMethod& method : ranking.methods) {
         const auto i = static_cast<std::size_t>(std::find(all.begin(), all.end(), method.label) - all.begin());
         std::vector<PlotPoint> points;
@@ -145,9 +146,9 @@ std::string seam_comparisons_svg(std::span<const SeamComparison> comparisons) {
     double y = 0;
     for (std::size_t i = 0; i < comparisons.size(); ++i, y += kHeight + kGap) {
         const std::string seam = "seam " + std::to_string(i) + ", ";
-        plots += plot(comparisons[i].equal, comparisons[i], axes, seam + "nodes equally spaced; spline", all, 0, y);
-        plots += plot(comparisons[i].curvature, comparisons[i], axes, seam + "nodes by curvature; spline", all,
-                      kWidth + kGap, y);
+        plots += plot(comparisons[i].equal, comparisons[i], axes, seam + "nodes equally spaced", all, 0, y);
+        plots +=
+            plot(comparisons[i].curvature, comparisons[i], axes, seam + "nodes by curvature", all, kWidth + kGap, y);
     }
     const double left = 2 * (kWidth + kGap), height = std::max(y, kLine * static_cast<double>(all.size() + 2));
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(left + kLegend, 0) + ' ' +

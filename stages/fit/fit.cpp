@@ -55,7 +55,7 @@ CurvePoints points_of(const Seam& seam, const Eigen::Vector3d& middle) {
     const double least = std::max(1e-6, 0.1 * quantile(sigma, 0.5));
     CurvePoints points;
     for (const SeamPoint& point : seam.points) {
-        points.p.push_back(point.p - middle);
+        points.p.emplace_back(point.p - middle);
         points.weight.push_back(std::pow(std::max(point.sigma_mm, least), -2));
     }
     points.u.assign(points.p.size(), 0);
