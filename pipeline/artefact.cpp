@@ -7,9 +7,13 @@ namespace {
 
 constexpr std::string_view kTail = "\n}\n";
 
+std::string before_key(std::string_view stage) {
+    return "{\n\"stage\": \"" + std::string(stage) + "\",\n\"key\": \"";
+}
+
 std::string head(std::string_view stage, std::string_view key, std::string_view content_sha256) {
-    return "{\n\"stage\": \"" + std::string(stage) + "\",\n\"key\": \"" + std::string(key) + "\",\n\"sha256\": \"" +
-           std::string(content_sha256) + "\",\n\"content\":\n";
+    return before_key(stage) + std::string(key) + "\",\n\"sha256\": \"" + std::string(content_sha256) +
+           "\",\n\"content\":\n";
 }
 
 }  // namespace
@@ -45,6 +49,13 @@ std::optional<std::string_view> artefact_content(std::string_view text, std::str
         return {};
     }
     return content;
+}
+
+std::optional<std::string_view> artefact_content(std::string_view text, std::string_view stage) {
+    constexpr std::size_t kKeyDigits = 64;
+    const std::string before = before_key(stage);
+    return text.starts_with(before) ? artefact_content(text, stage, text.substr(before.size(), kKeyDigits))
+                                    : std::nullopt;
 }
 
 }  // namespace seampath

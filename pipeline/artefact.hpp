@@ -16,4 +16,7 @@ std::string artefact_text(std::string_view stage, std::string_view key, std::str
 /// The content, if the text is a whole and undamaged artefact of this stage with this key.
 std::optional<std::string_view> artefact_content(std::string_view text, std::string_view stage, std::string_view key);
 
+/// The same with any key: for who reads a run and doesn't go on with it.
+std::optional<std::string_view> artefact_content(std::string_view text, std::string_view stage);
+
 }  // namespace seampath

@@ -84,6 +84,12 @@ void members(auto& archive, Is<Plan> auto& v) {
     archive("max_turn_deg", max_turn_deg)("duration_s", duration_s);
 }
 
+// The rest of the text of a scan is for people.
+void members(auto& archive, Is<ScanRecord> auto& v) {
+    auto& [file, file_sha256] = v;
+    archive("file", file)("file_sha256", file_sha256);
+}
+
 class Writer {
 public:
     template <class T>
@@ -227,9 +233,11 @@ std::string encode(const Plan& value) {
     return to_text(value);
 }
 
-std::string encode(const Scan& scan, const std::string& file_sha256) {
+std::string encode(const Scan& scan, const ScanRecord& record) {
     Writer writer;
-    writer("name", scan.name)("file_sha256", file_sha256)("format", scan.format);
+    writer("name", scan.name);
+    members(writer, record);
+    writer("format", scan.format);
     writer("mm_per_unit", scan.mm_per_unit)("unit_reason", scan.unit_reason);
     writer("points", scan.points.size())("points_in_file", scan.points_in_file);
     writer("dropped_not_finite", scan.dropped_not_finite)("normals", !scan.normals.empty());
@@ -250,6 +258,9 @@ void decode(std::string_view text, std::vector<Deviation>& value) {
     from_text(text, value);
 }
 void decode(std::string_view text, Plan& value) {
+    from_text(text, value);
+}
+void decode(std::string_view text, ScanRecord& value) {
     from_text(text, value);
 }
 

@@ -17,8 +17,14 @@ std::string encode(const std::vector<SeamModel>& value);
 std::string encode(const std::vector<Deviation>& value);
 std::string encode(const Plan& value);
 
-/// What is known of the scan without its points, with the SHA-256 of the file that they are read from.
-std::string encode(const Scan& scan, const std::string& file_sha256);
+/// The file that a scan is read from: its path from the run folder, and its SHA-256.
+struct ScanRecord {
+    std::string file;
+    std::string file_sha256;
+};
+
+/// What is known of the scan without its points.
+std::string encode(const Scan& scan, const ScanRecord& record);
 
 /// Each throws std::runtime_error when the text isn't what encode() writes.
 void decode(std::string_view text, Extraction& value);
@@ -26,5 +32,6 @@ void decode(std::string_view text, std::vector<Nodes>& value);
 void decode(std::string_view text, std::vector<SeamModel>& value);
 void decode(std::string_view text, std::vector<Deviation>& value);
 void decode(std::string_view text, Plan& value);
+void decode(std::string_view text, ScanRecord& value);
 
 }  // namespace seampath

@@ -112,7 +112,8 @@ PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config
 
     remove_products(folder);
     walk.write("config.resolved.json", config_json(config));
-    walk.keep("read", encode(part.scan, file_sha256));
+    walk.keep("read",
+              encode(part.scan, ScanRecord{fs::relative(scan_file, folder.path()).generic_string(), file_sha256}));
     walk_stages(part, walk);
     walk.always(
         "report", [&] { write_products(part, walk); }, report_summary);

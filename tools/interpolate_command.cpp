@@ -10,6 +10,7 @@
 #include "tools/choice.hpp"
 #include "tools/commands.hpp"
 #include "tools/interpolation.hpp"
+#include "tools/interpolation_run.hpp"
 #include "tools/output.hpp"
 #include "tools/table.hpp"
 
@@ -25,6 +26,7 @@ struct Arguments {
     int degree = 5;
     std::vector<double> end_slopes;
     std::vector<double> at;
+    InterpolateRun run;
     std::string out;
     bool differences = false;
     bool json = false;
@@ -181,6 +183,21 @@ int interpolate_table(const Arguments& given) {
     return kPass;
 }
 
+/// Options that one of the two uses has nothing to do with.
+void check_use(const CLI::App& app, bool folder) {
+    const std::vector<std::string> tables{"--method",     "--check",           "--split", "--degree",
+                                          "--end-slopes", "--parametrization", "--at",    "--differences"},
+        runs{"--nodes", "--scan"};
+    for (const auto& option : folder ? tables : runs) {
+        if (app.count(option) > 0) {
+            throw InputError(
+                option + ": is for " +
+                (folder ? "a table, not for the folder of a run" : "the folder of a run, not for a table") +
+                "; leave it out");
+        }
+    }
+}
+
 void add_list(CLI::App* app, const std::string& name, auto& values, const std::string& what) {
     app->add_option(name, values, what)->delimiter(',')->allow_extra_args(false);
 }
@@ -188,9 +205,10 @@ void add_list(CLI::App* app, const std::string& name, auto& values, const std::s
 }  // namespace
 
 Command interpolate_command(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("interpolate", "classical and spline interpolation of a table, compared");
+    CLI::App* app = program.add_subcommand(
+        "interpolate", "classical and spline interpolation of a table or of a scan's seams, compared");
     const auto given = std::make_shared<Arguments>();
-    app->add_option("TABLE", given->table, "table of x and y, x ascending")->required();
+    app->add_option("TABLE", given->table, "table of x and y, x ascending; or the folder of a run")->required();
     add_list(app, "--method", given->methods, "all (default), or with commas between: " + join(kMethodNames));
     app->add_option("--check", given->check, "table of points between the rows that the lines are measured against");
     app->add_option("--split", given->split, "inflections: polynomials end at the data's inflection points");
@@ -200,16 +218,27 @@ Command interpolate_command(CLI::App& program) {
              "of parametric: chord (default), or with commas between: " + join(kObjectiveNames));
     add_list(app, "--at", given->at, "x, with commas between, to print the values at");
     app->add_flag("--differences", given->differences, "print the table of finite differences");
-    app->add_option("--out", given->out, "SVG file to write: a plot of all lines");
+    add_list(app, "--nodes", given->run.nodes, "of a run: numbers of nodes to try, ascending; default 8,16,32");
+    app->add_option("--scan", given->run.scan, "of a run: where its scan is now, when it was moved");
+    app->add_option("--out", given->out, "SVG file to write: a plot of all lines, or of all rms over the nodes");
     app->add_flag("--json", given->json, "for machines");
     app->footer(
         "Examples:\n"
         "  seampath interpolate tests/papers/minejeva_table_4.csv --check tests/papers/minejeva_check_points.csv\n"
         "  seampath interpolate tests/papers/minejeva_table_2.csv --method newton-forward --at 1 --differences\n"
-        "  seampath interpolate seam.csv --method natural,pchip,parametric --parametrization foley --out seam.svg\n"
-        "With --check, methods are ranked by the mean of |e|, the differences in y; distances are those from the "
-        "line.\n");
-    return {app, [given] { return interpolate_table(*given); }};
+        "  seampath interpolate out --nodes 6,12,24 --out methods.svg     after seampath run part.ply --out out\n"
+        "With --check, methods are ranked by the mean of |e|, the differences in y; distances are those from the line. "
+        "On a run's seams they are ranked by the geometric mean of their rms distances; --set fit.model takes one.\n"
+        "Exit status: 0, or for a run 1 when it has no seam or on one of them even the line of least rms is out of "
+        "tolerance; 2 bad input\n");
+    return {app, [given, app] {
+                const bool folder = std::filesystem::is_directory(given->table);
+                check_use(*app, folder);
+                given->run.folder = given->table;
+                given->run.out = given->out;
+                given->run.json = given->json;
+                return folder ? interpolate_run(given->run) : interpolate_table(*given);
+            }};
 }
 
 }  // namespace seampath

@@ -40,6 +40,11 @@ std::vector<std::string> warnings(const MethodResult& result);
 std::string comparison_text(const Comparison& comparison);
 nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
+/// The CSS class of line i of a plot, the style of so many lines as an SVG element, and their legend.
+std::string line_class(std::size_t i);
+std::string line_style(std::size_t lines);
+std::string line_legend(const std::vector<std::string>& labels, double left_px, double line_px);
+
 /// A plot of all lines with nodes and check points, as a file of its own.
 std::string comparison_svg(const Comparison& comparison);
 

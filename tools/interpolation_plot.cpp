@@ -15,24 +15,6 @@ constexpr std::array<const char*, 10> kColours{"#332288", "#cc3311", "#117733", 
 // CSS pixels.
 constexpr double kWidth = 760, kHeight = 480, kLegend = 190, kLine = 18;
 
-std::string line_class(std::size_t i) {
-    return "line" + std::to_string(i);
-}
-
-/// Colours come again with dashes.
-std::string style(const Comparison& comparison) {
-    std::string css =
-        "text { font: 11px sans-serif; fill: #5b6775; } .grid { stroke: #edf0f3; } .axis { stroke: #8b95a0; } "
-        ".middle { text-anchor: middle; } .end { text-anchor: end; } path { fill: none; stroke-width: 1.4; } "
-        ".node { fill: #fff; stroke: #1c2530; } .check { fill: #1c2530; }";
-    for (std::size_t i = 0; i < comparison.results.size(); ++i) {
-        const char* dashes = i < kColours.size() ? "" : "; stroke-dasharray: 5 3";
-        css.append(" .").append(line_class(i)).append(" { stroke: ").append(kColours[i % kColours.size()]);
-        css.append(dashes).append("; }");
-    }
-    return "<style>" + css + "</style>";
-}
-
 /// The nodes and check points with some room; lines that swing farther are cut at the edge.
 PlotAxes axes(const Comparison& comparison) {
     auto [low, high] = std::minmax_element(comparison.y.begin(), comparison.y.end());
@@ -60,25 +42,45 @@ std::vector<PlotPoint> samples(const Interpolant& line) {
     return points;
 }
 
-std::string legend(const Comparison& comparison) {
+}  // namespace
+
+std::string line_class(std::size_t i) {
+    return "line" + std::to_string(i);
+}
+
+/// Colours come again with dashes.
+std::string line_style(std::size_t lines) {
+    std::string css =
+        "text { font: 11px sans-serif; fill: #5b6775; } .grid { stroke: #edf0f3; } .axis { stroke: #8b95a0; } "
+        ".middle { text-anchor: middle; } .end { text-anchor: end; } path { fill: none; stroke-width: 1.4; } "
+        ".node { fill: #fff; stroke: #1c2530; } .check { fill: #1c2530; } .spline { stroke: #1c2530; }";
+    for (std::size_t i = 0; i < lines; ++i) {
+        const char* dashes = i < kColours.size() ? "" : "; stroke-dasharray: 5 3";
+        css.append(" .").append(line_class(i)).append(" { stroke: ").append(kColours[i % kColours.size()]);
+        css.append(dashes).append("; }");
+    }
+    return "<style>" + css + "</style>";
+}
+
+std::string line_legend(const std::vector<std::string>& labels, double left_px, double line_px) {
     std::string svg;
-    for (std::size_t i = 0; i < comparison.results.size(); ++i) {
-        const std::string y = decimal(20 + kLine * static_cast<double>(i), 1);
-        svg.append("<path class=\"").append(line_class(i)).append("\" d=\"M").append(decimal(kWidth + 8, 1));
-        svg.append(" ").append(y).append("h24\"/><text x=\"").append(decimal(kWidth + 40, 1)).append("\" y=\"");
-        svg.append(y).append("\" dy=\"4\">").append(escape_html(comparison.results[i].label)).append("</text>");
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const std::string y = decimal(20 + line_px * static_cast<double>(i), 1);
+        svg.append("<path class=\"").append(line_class(i)).append("\" d=\"M").append(decimal(left_px + 8, 1));
+        svg.append(" ").append(y).append("h24\"/><text x=\"").append(decimal(left_px + 40, 1)).append("\" y=\"");
+        svg.append(y).append("\" dy=\"4\">").append(escape_html(labels[i])).append("</text>");
     }
     return svg;
 }
-
-}  // namespace
 
 std::string comparison_svg(const Comparison& comparison) {
     const PlotAxes frame = axes(comparison);
     const double height = std::max(kHeight, 20 + kLine * static_cast<double>(comparison.results.size()));
     std::string plot = svg_axes(frame, "Interpolation of a table by several methods");
     plot.insert(4, " width=\"" + decimal(kWidth, 0) + "\" height=\"" + decimal(kHeight, 0) + "\"");  // after "<svg"
+    std::vector<std::string> labels;
     for (std::size_t i = 0; i < comparison.results.size(); ++i) {
+        labels.push_back(comparison.results[i].label);
         plot += svg_line(frame, samples(comparison.results[i].line), line_class(i));
     }
     std::vector<PlotPoint> nodes, checks;
@@ -90,8 +92,9 @@ std::string comparison_svg(const Comparison& comparison) {
     }
     plot += svg_dots(frame, nodes, 3.5, "node") + svg_dots(frame, checks, 2, "check") + svg_end();
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(kWidth + kLegend, 0) + ' ' +
-           decimal(height, 0) + "\">" + style(comparison) + "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
-           plot + legend(comparison) + svg_end();
+           decimal(height, 0) + "\">" + line_style(labels.size()) +
+           "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" + plot + line_legend(labels, kWidth, kLine) +
+           svg_end();
 }
 
 }  // namespace seampath

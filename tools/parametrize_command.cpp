@@ -63,14 +63,33 @@ std::string coordinate_name(const Table& table, std::size_t k) {
     return table.header.empty() ? "c" + std::to_string(k + 1) : table.header[k];
 }
 
-/// The points with their parameter before them.
-std::string csv(const Table& table, const Parametrization& result) {
-    std::string text = "t";
+/// When each point is passed if the travel is as short as the limits allow, s.
+std::vector<double> times(const Parametrization& result) {
+    std::vector<double> all;
+    for (const double t : result.t) {
+        all.push_back(t * std::sqrt(result.peak));
+    }
+    return all;
+}
+
+/// Largest acceleration of each coordinate at these times, over its limit.
+std::vector<double> over_limits(const Parametrization& result, const std::vector<double>& limits) {
+    std::vector<double> shares;
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+        shares.push_back(result.peak > 0 ? result.max_acceleration[k] / result.peak / limits[k] : 0);
+    }
+    return shares;
+}
+
+/// The points with their parameter before them, and with limits their time.
+std::string csv(const Table& table, const Parametrization& result, bool timed) {
+    const std::vector<double> time = times(result);
+    std::string text = timed ? "t,time_s" : "t";
     for (std::size_t k = 0; k < table.rows[0].size(); ++k) {
         text += "," + coordinate_name(table, k);
     }
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
-        text += "\n" + shortest(result.t[i]);
+        text += "\n" + shortest(result.t[i]) + (timed ? "," + shortest(time[i]) : "");
         for (const double value : table.rows[i]) {
             text += "," + shortest(value);
         }
@@ -93,6 +112,10 @@ Json bending_json(const Parametrization& result) {
 Json result_json(const Arguments& given, const Parametrization& result, const Parametrization& chord) {
     Json json{{"objective", given.objective}, {"t", result.t}};
     json.update(bending_json(result));
+    if (!given.limits.empty()) {
+        json["time_s"] = times(result);
+        json["acceleration_over_limit"] = over_limits(result, given.limits);
+    }
     json["chord"] = bending_json(chord);
     json["travel_time_saved"] = travel_time_saved(result, chord);
     json["evaluations"] = result.evaluations;
@@ -112,6 +135,10 @@ void print(const Arguments& given, const Table& table, const Parametrization& re
         add("largest acceleration, " + coordinate_name(table, k), result.max_acceleration[k], chord.max_acceleration[k],
             3);
     }
+    for (std::size_t k = 0; k < given.limits.size(); ++k) {
+        add("over limit in the shortest time, " + coordinate_name(table, k), over_limits(result, given.limits)[k],
+            over_limits(chord, given.limits)[k], 4);
+    }
     add("largest over its limit", result.peak, chord.peak, 4);
     add("shortest travel time", std::sqrt(result.peak), std::sqrt(chord.peak), 4);
     std::cout << aligned(rows)
@@ -125,6 +152,9 @@ void print(const Arguments& given, const Table& table, const Parametrization& re
     for (std::size_t i = 0; i < result.t.size(); ++i) {
         parameters.push_back({std::to_string(i + 1), fixed(result.t[i], 6)});
     }
+    for (std::size_t i = 0; !given.limits.empty() && i < parameters.size(); ++i) {
+        parameters[i].push_back(i == 0 ? "time s" : fixed(times(result)[i - 1], 4));
+    }
     std::cout << "\n" << aligned(parameters);
 }
 
@@ -136,7 +166,7 @@ int parametrize_points(const Arguments& given) {
     options.objective = Objective::chord;
     const Parametrization chord = parametrize(points, options);
     if (!given.out.empty()) {
-        write_output(given.out, csv(table, result));
+        write_output(given.out, csv(table, result, !given.limits.empty()));
     }
     if (given.json) {
         std::cout << result_json(given, result, chord).dump(4) << "\n";
@@ -164,14 +194,18 @@ Command parametrize_command(CLI::App& program) {
         ->delimiter(',')
         ->allow_extra_args(false);
     app->add_option("--solver", given->solver, "lbfgs, or the paper's gradient-projection for comparison");
-    app->add_option("--out", given->out, "CSV file to write: each point with its t before it");
+    app->add_option("--out", given->out,
+                    "CSV file to write: each point with its t before it, and its time when there are limits");
     app->add_flag("--json", given->json, "for machines");
     app->footer(
         "Examples:\n"
         "  seampath parametrize curve.csv --objective foley --out curve_t.csv\n"
         "  seampath parametrize tests/papers/marin_table_2.csv --objective exact\n"
-        "  seampath parametrize tests/papers/marin_table_4.csv --objective minimax --limits 1,1,2,6,6,6 --json\n"
-        "t runs from 0 to 1. The shortest travel time is that in which no coordinate exceeds its limit, in s.\n");
+        "  seampath parametrize tests/papers/marin_table_4.csv --objective minimax --limits 1,1,2,6,6,6 --out "
+        "joints_t.csv\n"
+        "t runs from 0 to 1. The shortest travel time is that in which no coordinate exceeds its limit, in s; with "
+        "--limits each row gets its "
+        "time in it.\n");
     return {app, [given] { return parametrize_points(*given); }};
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "stages/error.hpp"
+#include "stages/fit/interpolated.hpp"
 #include "stages/fit/outliers.hpp"
 #include "stages/fit/pspline.hpp"
 #include "stages/fit/smoothing.hpp"
@@ -54,7 +55,7 @@ CurvePoints points_of(const Seam& seam, const Eigen::Vector3d& middle) {
     const double least = std::max(1e-6, 0.1 * quantile(sigma, 0.5));
     CurvePoints points;
     for (const SeamPoint& point : seam.points) {
-        points.p.push_back(point.p - middle);
+        points.p.emplace_back(point.p - middle);
         points.weight.push_back(std::pow(std::max(point.sigma_mm, least), -2));
     }
     points.u.assign(points.p.size(), 0);
@@ -174,12 +175,7 @@ void choose_smoothing(PenalisedSpline& spline, const CurvePoints& points, Smooth
     set_level(spline, points, s);
 }
 
-struct Fitted {
-    CubicBSpline curve;
-    double freedom;
-};
-
-Fitted fit_curve(CurvePoints& points, bool closed) {
+FittedCurve fit_curve(CurvePoints& points, bool closed) {
     double end = set_parameters(points, points.p, closed);
     if (!(end > 0)) {
         throw InputError("fit: the seam has no length; all its points coincide; check the scan");
@@ -211,13 +207,32 @@ Fitted fit_curve(CurvePoints& points, bool closed) {
     return {std::move(curve), s.freedom};
 }
 
-}  // namespace
-
-Fields describe(FitOptions&) {
-    return {};
+// An option that changes nothing would let its user believe that it did.
+void check_options(const FitOptions& o) {
+    const std::string model = "; fit.model is " + std::string(name(o.model)) + "; ";
+    if (o.model == FitModel::spline && o.axis != FitAxis::length) {
+        throw InputError("fit: fit.axis is for models that interpolate" + model + "set fit.axis to length");
+    }
+    if (o.model != FitModel::parametric && o.parametrization != Objective::chord) {
+        throw InputError("fit: fit.parametrization is for the parametric model" + model +
+                         "set fit.model to parametric or fit.parametrization to chord");
+    }
 }
 
-SeamModel fit(const Seam& seam, const Nodes&, const FitOptions&) {
+}  // namespace
+
+Fields describe(FitOptions& o) {
+    return {
+        {"model", choice(o.model, kFitModelNames),
+         "spline through all seam points as their scatter allows; the others pass the nodes"},
+        {"axis", choice(o.axis, kFitAxisNames), "what the nodes' x, y and z are interpolated over"},
+        {"parametrization", choice(o.parametrization, kFitParametrizationNames),
+         "how the parametric model spaces its parameter"},
+        {"degree", &o.degree, "highest degree of newton-forward, newton-backward, bessel and lagrange", within(1, 5)}};
+}
+
+SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
+    check_options(options);
     if (seam.points.size() < 6) {
         throw InputError("fit: the seam has " + std::to_string(seam.points.size()) +
                          " points; at least 6 are needed; lower extract.station_mm");
@@ -228,7 +243,8 @@ SeamModel fit(const Seam& seam, const Nodes&, const FitOptions&) {
         middle += point.p / static_cast<double>(seam.points.size());
     }
     CurvePoints points = points_of(seam, middle);
-    auto [curve, freedom] = fit_curve(points, seam.closed);
+    auto [curve, freedom] = options.model == FitModel::spline ? fit_curve(points, seam.closed)
+                                                              : interpolate_nodes(points, nodes, seam.closed, options);
     SeamModel model;
     model.kind = seam.kind;
     model.closed = seam.closed;

@@ -1,20 +1,73 @@
 #pragma once
 
+#include "stages/geometry/parametrize.hpp"
 #include "stages/options.hpp"
 #include "stages/types.hpp"
 
 namespace seampath {
 
-/// Nothing to choose: how smooth the curve is follows from the points.
-struct FitOptions {};
+/// What the curve is: a smoothing spline through all points, or one of the lines that Minejeva & Markovics, Choice of
+/// interpolation method for an arbitrary arc welding curve, compare, through the nodes. Their Stirling formula is not
+/// among them: its line jumps midway between nodes; Newton's divided differences give Lagrange's line.
+enum class FitModel {
+    spline,
+    natural,
+    clamped,
+    not_a_knot,
+    periodic,
+    akima,
+    pchip,
+    linear,
+    parametric,
+    newton_forward,
+    newton_backward,
+    bessel,
+    lagrange
+};
+inline constexpr std::array<std::string_view, 13> kFitModelNames{
+    "spline", "natural",    "clamped",        "not-a-knot",      "periodic", "akima",   "pchip",
+    "linear", "parametric", "newton-forward", "newton-backward", "bessel",   "lagrange"};
+inline std::string_view name(FitModel model) {
+    return kFitModelNames[static_cast<std::size_t>(model)];
+}
+
+/// What x, y and z are functions of.
+enum class FitAxis { length, x, y, z };
+inline constexpr std::array<std::string_view, 4> kFitAxisNames{"length", "x", "y", "z"};
+
+/// `minimax` is for limits of a robot's axes; a seam has none.
+inline constexpr std::array<std::string_view, 5> kFitParametrizationNames{
+    kObjectiveNames[0], kObjectiveNames[1], kObjectiveNames[2], kObjectiveNames[3], kObjectiveNames[4]};
+
+struct FitOptions {
+    FitModel model = FitModel::spline;
+    FitAxis axis = FitAxis::length;
+    Objective parametrization = Objective::chord;
+    int degree = 5;  ///< Minejeva & Markovics, section VII: no more
+};
 Fields describe(FitOptions&);
 
-/// Penalised least-squares cubic B-spline through the seam points (Eilers & Marx 1996), periodic when the seam is
-/// closed. Points count with 1/sigma^2, of which only the ratios matter unless the points scatter less than stated;
-/// single points that are off from their neighbours don't count. Distances are orthogonal. How stiff the curve is, and
-/// where, is chosen from the points (smoothing.hpp), knots are as dense as the freedom that it turns out to have. The
-/// nodes are not needed: every point takes part. Time is O(points). Throws InputError for fewer than 6 points or a seam
-/// without length.
+/// Whether the nodes of a model lie at equal steps; such a model takes as many as were placed, but sets them itself.
+bool sets_nodes(FitModel model);
+
+/// The curve of a seam.
+///
+/// `spline`: penalised least-squares cubic B-spline through the seam points (Eilers & Marx 1996), periodic when the
+/// seam is closed. Points count with 1/sigma^2, of which only the ratios matter unless the points scatter less than
+/// stated; single points that are off from their neighbours don't count. Distances are orthogonal. How stiff the curve
+/// is, and where, is chosen from the points (smoothing.hpp), knots are as dense as the freedom that it turns out to
+/// have. The nodes are not needed: every point takes part. Time is O(points).
+///
+/// All others pass the nodes, each coordinate interpolated over arc length along the seam's points or along an axis;
+/// `parametric` is the natural spline, of a closed seam the periodic one, over Marin's parameters (parametrize.hpp).
+/// Newton I, Newton II and Bessel need equal steps: nodes at equal arc lengths (or equal steps of the axis) are read
+/// off Akima's line through all seam points. Lagrange's degree is odd, for one of even degree jumps. Closed seams are
+/// interpolated round and round, from their first node. Cubics become the B-spline exactly, with double and triple
+/// knots where they share one derivative or none; higher degrees are followed to within 1e-6 mm.
+///
+/// Throws InputError for fewer than 6 points, a seam without length, neighbouring nodes in one place, and a model that
+/// can't serve the seam: `periodic` on an open one, `natural`, `clamped`, `not-a-knot` on a closed one, an axis along
+/// which the seam turns back, an option that the model has no use for.
 SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options);
 
 }  // namespace seampath

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "stages/error.hpp"
-#include "stages/geometry/piecewise_cubic.hpp"
 #include "stages/geometry/polynomial.hpp"
 #include "stages/text.hpp"
 
@@ -149,10 +148,11 @@ Interpolant by_nodes(const Input& in, bool lagrange) {
 }
 
 Interpolant by_spline(PiecewiseCubic spline) {
-    Values x = spline.x;
-    return graph(std::move(x), [spline = std::move(spline)](double at) {
+    Interpolant line = graph(spline.x, [spline](double at) {
         return Evaluation{spline.value(at), std::nullopt, std::nullopt};
     });
+    line.cubic = std::move(spline);
+    return line;
 }
 
 Interpolant natural(const Input& in) {

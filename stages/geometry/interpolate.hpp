@@ -11,6 +11,7 @@
 
 #include "stages/geometry/differences.hpp"
 #include "stages/geometry/parametrize.hpp"
+#include "stages/geometry/piecewise_cubic.hpp"
 
 /// Interpolation of a table by the methods that Minejeva & Markovics, Choice of interpolation method for an arbitrary
 /// arc welding curve, compare, and by those that serve better.
@@ -63,6 +64,7 @@ struct Interpolant {
     std::vector<double> t;  ///< parameter at each node: its x, or that of `parametric`
     std::function<Eigen::Vector2d(double t)> at;
     std::function<Evaluation(double x)> evaluate;  ///< throws InputError outside the table
+    std::optional<PiecewiseCubic> cubic;           ///< y(x), of the splines
 
     double value(double x) const { return evaluate(x).y; }
 };

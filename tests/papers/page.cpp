@@ -19,7 +19,8 @@ std::string papers_page() {
     return "# What the papers print, and what comes out\n\n"
            "Made by `build/seampath_papers > docs/papers.md`; a test holds that this page is what that program prints. "
            "The papers' tables are in `tests/papers/`.\n\n" +
-           interpolation_section() + parametrization_section() + saddle_section() + mechanism_section();
+           interpolation_section() + scanned_section() + parametrization_section() + saddle_section() +
+           mechanism_section();
 }
 
 }  // namespace seampath

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "stages/geometry/piecewise_cubic.hpp"
 #include "tests/cli/spawn.hpp"
 #include "tests/papers/tables.hpp"
 
@@ -55,6 +56,44 @@ TEST(ParametrizeCli, WritesThePointsWithTheirParameters) {
     ASSERT_EQ(table.rows.size(), 20u);
     EXPECT_THAT(table.rows.front(), testing::ElementsAre(0, 0.53, 0.72));
     EXPECT_THAT(table.rows.back(), testing::ElementsAre(1, 0.09, 0.385));
+}
+
+// At the times that come out, by differences of the spline through the table: no axis exceeds its limit, one reaches
+// it.
+TEST(ParametrizeCli, TimesHoldTheLimitsOfEachAxis) {
+    const TestFolder folder;
+    const auto file = folder.path() / "timed.csv";
+    const std::vector<double> limits{1, 1, 2, 6, 6, 12};
+    const Outcome run = parametrize_program({paper_file("marin_table_4.csv"), "--objective", "minimax", "--limits",
+                                             "1,1,2,6,6,12", "--out", file, "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto json = nlohmann::json::parse(run.out);
+    const Table table = read_table(file);
+    ASSERT_EQ(table.header.size(), 8u);
+    EXPECT_THAT(table.header, testing::Contains("time_s"));
+    std::vector<double> time;
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        time.push_back(table.rows[i][1]);
+        EXPECT_EQ(json.at("time_s")[i].get<double>(), time.back());
+        EXPECT_NEAR(time.back(), table.rows[i][0] * json.at("travel_time").get<double>(), 1e-12);
+    }
+    double most = 0;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        std::vector<double> angle;
+        for (const auto& row : table.rows) {
+            angle.push_back(row[axis + 2]);
+        }
+        const PiecewiseCubic spline = natural_spline(time, angle);
+        double largest = 0;
+        for (const double at : time) {  // linear in between
+            largest = std::max(largest, std::abs(spline.second(at)));
+        }
+        EXPECT_NEAR(json.at("acceleration_over_limit")[axis].get<double>(), largest / limits[axis], 1e-9);
+        most = std::max(most, largest / limits[axis]);
+    }
+    EXPECT_NEAR(most, 1, 1e-9);
+    EXPECT_THAT(parametrize_program({paper_file("marin_table_4.csv"), "--limits", "1,1,2,6,6,12"}).out,
+                AllOf(HasSubstr("time s"), HasSubstr("over limit"), HasSubstr("17.68")));
 }
 
 TEST(ParametrizeCli, RefusesRepeatedPointsWithRowsAndLines) {

@@ -8,6 +8,7 @@
 namespace seampath {
 
 std::string interpolation_section();    ///< Minejeva & Markovics
+std::string scanned_section();          ///< the same methods on seams of scans
 std::string parametrization_section();  ///< Marin
 std::string saddle_section();           ///< Xue et al.
 std::string mechanism_section();        ///< Naumov et al.
