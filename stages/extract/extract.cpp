@@ -142,8 +142,12 @@ void settle_all(Extraction& result, const Tracker& following, std::vector<Measur
         add_differences(differences, joint.way);
     }
     result.registration_mm = registration_of(differences);
+    // Few views tell their scatter but roughly: 68 % of Student's t with f degrees of freedom lie within 1 + 0.6 / f,
+    // and two flanks see each view in two directions.
+    const double freedom = 2.0 * std::max(1, result.views - 1),
+                 registration = result.registration_mm * (1 + 0.6 / freedom);
     for (Measured& joint : joints) {
-        settle_on_whole_flanks(tracker, result.registration_mm, joint.way);
+        settle_on_whole_flanks(tracker, registration, joint.way);
         result.seams.push_back(seam_of(joint, origin));
     }
     std::stable_sort(result.seams.begin(), result.seams.end(),

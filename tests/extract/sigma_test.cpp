@@ -32,9 +32,9 @@ struct Coverage {
     double one = 0, two = 0, registration = 0;
 };
 
-/// Shares of points within 1 and 2 sigma of the true seam, over 30 scans.
+/// Shares of points within 1 and 2 sigma of the true seam, over 60 scans.
 Coverage coverage(int views, double registration) {
-    constexpr std::uint64_t kScans = 30;
+    constexpr std::uint64_t kScans = 60;
     Coverage sum;
     double points = 0, squares = 0;
     for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
@@ -59,7 +59,7 @@ Coverage coverage(int views, double registration) {
 
 // A point lies off its seam in two directions: of such errors 63 % are within one sigma (the root of both variances)
 // and 98 % within two when the two are alike, 68 % and 95 % when one of them is all. All points of a scan share the
-// views' shifts, so that 30 scans are 30 draws and a share is sure to 9 %.
+// views' shifts, so that 60 scans are 60 draws and a share is sure to 6 %.
 TEST(Sigma, HoldsWhereViewsAreShifted) {
     const Coverage c = coverage(4, 0.015);
     EXPECT_NEAR(c.registration, 0.015, 0.002);
