@@ -26,9 +26,22 @@ void members(auto& archive, Is<SeamPoint> auto& v) {
     archive("p", p)("n1", n1)("n2", n2)("sigma_mm", sigma_mm)("modelled", modelled);
 }
 
+void members(auto& archive, Is<Measured> auto& v) {
+    auto& [value, sigma] = v;
+    archive("value", value)("sigma", sigma);
+}
+
+void members(auto& archive, Is<GrooveStation> auto& v) {
+    auto& [gap_mm, mismatch_mm, bevel1_rad, bevel2_rad, included_angle_rad, depth_mm, root_face_mm, area_mm2] = v;
+    archive("gap_mm", gap_mm)("mismatch_mm", mismatch_mm)("bevel1_rad", bevel1_rad)("bevel2_rad", bevel2_rad);
+    archive("included_angle_rad", included_angle_rad)("depth_mm", depth_mm)("root_face_mm", root_face_mm);
+    archive("area_mm2", area_mm2);
+}
+
 void members(auto& archive, Is<Seam> auto& v) {
-    auto& [kind, closed, confidence, points] = v;
-    archive("kind", kind)("closed", closed)("confidence", confidence)("points", points);
+    auto& [kind, closed, confidence, kind_reason, points, groove] = v;
+    archive("kind", kind)("closed", closed)("confidence", confidence)("kind_reason", kind_reason)("points", points);
+    archive("groove", groove);
 }
 
 void members(auto& archive, Is<Extraction> auto& v) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,13 +52,34 @@ struct SeamPoint {
     bool modelled = false;  ///< true: bridged, not measured (support on both sides only)
 };
 
+/// A number and its 1-sigma; both NaN where the scan does not show it.
+struct Measured {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    double sigma = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Section of a butt joint or groove at one place, in the terms of ISO 9692-1. Bevel angles are from the upright of
+/// their plate; side 1 is the one of flank 1.
+struct GrooveStation {
+    Measured gap_mm;       ///< between the plates at the root, along the surface
+    Measured mismatch_mm;  ///< height of plate 2's top above plate 1's
+    Measured bevel1_rad;
+    Measured bevel2_rad;
+    Measured included_angle_rad;
+    Measured depth_mm;      ///< of the bevels, from the tops' mean height to the root
+    Measured root_face_mm;  ///< upright part of the edges below the bevels
+    Measured area_mm2;      ///< of the section between the plates, the tops and the root
+};
+
 /// Ordered points of one seam. Flank 1 and 2 are so that the cross product n1 x n2 points along travel. A closed seam
 /// does not repeat its first point.
 struct Seam {
     JointKind kind = JointKind::fillet;
     bool closed = false;
-    double confidence = 0;          ///< 0..1, how sure extraction is that this is a joint of that kind
-    std::vector<SeamPoint> points;  ///< at least 4, in order along the seam
+    double confidence = 0;              ///< 0..1, how sure extraction is that this is a joint of that kind
+    std::string kind_reason;            ///< what was seen that makes it one, e.g. "surfaces meet at 87 deg, ..."
+    std::vector<SeamPoint> points;      ///< at least 4, in order along the seam
+    std::vector<GrooveStation> groove;  ///< one a point of a butt joint or V-groove, otherwise empty
 };
 
 /// The few points that carry the shape of a seam.

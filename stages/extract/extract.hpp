@@ -15,6 +15,7 @@ inline constexpr std::array<std::string_view, 7> kJointChoiceNames{"auto",     "
 
 struct ExtractOptions {
     JointChoice joint = JointChoice::automatic;
+    bool convex = false;
     double min_length_mm = 0;  ///< 0: from the scan
     double station_mm = 0;     ///< 0: from the scan
 };
@@ -31,8 +32,9 @@ struct Extraction {
     std::vector<std::string> remarks;  ///< one sentence each, e.g. a candidate that was dropped and why
 };
 
-/// Finds every joint of the asked kind. An empty `seams` is a result, not an error.
-/// Throws InputError when the scan cannot carry a measurement at all (too few points, all in one place).
+/// Finds every joint of the asked kind: of all kinds but corners when that is left to the scan. An empty `seams` is a
+/// result, not an error. Throws InputError when the scan cannot carry a measurement at all (too few points, all in one
+/// place).
 Extraction extract(const Scan& scan, const ExtractOptions& options);
 
 }  // namespace seampath

@@ -113,6 +113,8 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     result.tolerance_mm =
         options.tolerance_mm > 0 ? options.tolerance_mm : std::max(kLeastTolerance, kNoiseTolerance * scale.noise);
     result.samples.resize(count);
+    // A corner is measured inside out: from within the material it is concave.
+    const double outwards = model.kind == JointKind::corner ? -1 : 1;
     std::vector<double> density[2];
     density[0].assign(count, 0);
     density[1].assign(count, 0);
@@ -121,10 +123,11 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
         sample.station_mm = arc.length() * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
         sample.p = position(model.curve, arc.parameter(sample.station_mm));
         const FlankSample flanks = flanks_at(model, sample.station_mm);
-        const auto fit = fit_section(grid, scale, {sample.p - scan.origin_mm, flanks.n1, flanks.n2}, window);
+        const auto fit =
+            fit_section(grid, scale, {sample.p - scan.origin_mm, outwards * flanks.n1, outwards * flanks.n2}, window);
         if (fit) {
-            sample.flank1_mm = signed_distance(fit->flank[0]);
-            sample.flank2_mm = signed_distance(fit->flank[1]);
+            sample.flank1_mm = outwards * signed_distance(fit->flank[0]);
+            sample.flank2_mm = outwards * signed_distance(fit->flank[1]);
             sample.distance_mm = fit->shift;
             sample.sigma_mm = fit->sigma;
             sample.covered = true;

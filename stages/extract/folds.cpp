@@ -1,0 +1,157 @@
+#include "stages/extract/folds.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "stages/extract/join.hpp"
+#include "stages/extract/measure.hpp"
+#include "stages/extract/registration.hpp"
+#include "stages/extract/track.hpp"
+#include "stages/extract/whole.hpp"
+#include "stages/geometry/robust.hpp"
+#include "stages/text.hpp"
+
+namespace seampath::detail {
+namespace {
+
+constexpr double kLeastLength = 10;  // of a seam, in point distances
+
+// The creases that may be joints, heaviest first. A convex one is turned inside out: seen from within the material it
+// is concave, and all that follows holds for it.
+std::vector<Crease> seeds_of(const std::vector<Crease>& creases, bool convex) {
+    std::vector<Crease> seeds;
+    for (Crease crease : creases) {
+        if (crease.concave == convex) {
+            continue;
+        }
+        if (convex) {
+            crease.n1 = -crease.n1;
+            crease.n2 = -crease.n2;
+        }
+        seeds.push_back(crease);
+    }
+    std::stable_sort(seeds.begin(), seeds.end(), [](const Crease& a, const Crease& b) { return a.weight > b.weight; });
+    return seeds;
+}
+
+std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>& seeds) {
+    std::vector<Track> tracks;
+    std::vector<char> used(seeds.size(), 0);
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        if (used[i]) {
+            continue;
+        }
+        auto track = follow(tracker, seeds[i], tracks);
+        if (!track) {
+            continue;
+        }
+        // Seeds along the new track have nothing more to tell.
+        for (std::size_t j = i + 1; j < seeds.size(); ++j) {
+            used[j] = used[j] || lies_on(*track, {seeds[j].p, seeds[j].n1, seeds[j].n2}, 2 * tracker.step);
+        }
+        tracks.push_back(std::move(*track));
+    }
+    return tracks;
+}
+
+template <class Points, class Position>
+double length_of(const Points& points, Position&& position) {
+    double length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        length += (position(points[i]) - position(points[i - 1])).norm();
+    }
+    return length;
+}
+
+// A track that turned out to be a joint.
+struct Fold {
+    std::vector<TrackPoint> way;
+    bool closed = false;
+    bool convex = false;  // `way` is inside out
+};
+
+// The joints among the tracks; of the others a remark says why they are none.
+std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length,
+                              std::vector<std::string>& remarks) {
+    const auto length = [](const std::vector<TrackPoint>& way) {
+        return length_of(way, [](const TrackPoint& p) { return p.section.p; });
+    };
+    std::vector<Fold> joints;
+    for (const Track& track : tracks) {
+        const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
+        const double least = min_length > 0 ? min_length : kLeastLength * spacing;
+        double found = length(track.points);
+        if (found >= least) {
+            auto way = measure_track(tracker, track);
+            if (!way) {
+                remarks.push_back("a crease of " + fixed(found, 1) +
+                                  " mm was left out: its flanks are too narrow or too rough for a joint");
+                continue;
+            }
+            found = length(*way);
+            if (found >= least) {
+                joints.push_back({std::move(*way), track.closed});
+                continue;
+            }
+        }
+        remarks.push_back("a joint of " + fixed(found, 1) + " mm was left out: shorter than " + fixed(least, 1) +
+                          " mm");
+    }
+    return joints;
+}
+
+Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
+    Seam seam;
+    seam.kind = fold.convex ? JointKind::corner : JointKind::fillet;
+    seam.closed = fold.closed;
+    const double outwards = fold.convex ? -1 : 1;
+    std::vector<double> bends;
+    for (const TrackPoint& point : fold.way) {
+        const Section& at = point.section;
+        seam.points.push_back({origin + at.p, outwards * at.n1, outwards * at.n2, point.sigma, point.modelled});
+        bends.push_back(point.bend);
+    }
+    const double bend = quantile(bends, 0.5);
+    // Half a radian between the flanks and nobody doubts that they are two.
+    seam.confidence = std::min(1.0, bend / 0.5);
+    seam.kind_reason = std::string("two surfaces meet ") + (fold.convex ? "around the material" : "around the air") +
+                       " at " + fixed(180 - bend * 180 / std::numbers::pi, 0) + " deg";
+    return seam;
+}
+
+}  // namespace
+
+Folds find_folds(const Around& around, bool concave, bool convex, double min_length_mm) {
+    const Tracker& following = around.following;
+    Folds result;
+    std::vector<Fold> folds;
+    for (const bool inside_out : {false, true}) {
+        if (inside_out ? !convex : !concave) {
+            continue;
+        }
+        const auto tracks = join_tracks(following, follow_all(following, seeds_of(around.creases, inside_out)));
+        for (Fold& fold : measure_all(following, tracks, min_length_mm, result.remarks)) {
+            fold.convex = inside_out;
+            folds.push_back(std::move(fold));
+        }
+    }
+    // Where the joints lie, by all that their flanks tell.
+    Tracker measuring = following;
+    measuring.window_of = measuring_window;
+    ViewDifferences differences;
+    for (const Fold& fold : folds) {
+        add_differences(differences, fold.way);
+    }
+    result.registration_mm = registration_of(differences);
+    // Few views tell their scatter but roughly: 68 % of Student's t with f degrees of freedom lie within 1 + 0.6 / f,
+    // and two flanks see each view in two directions.
+    const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1),
+                 registration = result.registration_mm * (1 + 0.6 / freedom);
+    for (Fold& fold : folds) {
+        settle_on_whole_flanks(measuring, registration, fold.way);
+        result.seams.push_back(seam_of(fold, around.scan.origin_mm));
+    }
+    return result;
+}
+
+}  // namespace seampath::detail
