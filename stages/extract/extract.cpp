@@ -10,6 +10,7 @@
 #include "stages/extract/around.hpp"
 #include "stages/extract/creases.hpp"
 #include "stages/extract/folds.hpp"
+#include "stages/extract/slanted.hpp"
 #include "stages/extract/surfels.hpp"
 #include "stages/geometry/views.hpp"
 
@@ -104,6 +105,9 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
         find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options.min_length_mm);
     result.registration_mm = folds.registration_mm;
     take(result, std::move(folds.seams), std::move(folds.remarks));
+    if (asked(options, JointChoice::fillet)) {
+        take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});
+    }
     std::stable_sort(result.seams.begin(), result.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
     return result;

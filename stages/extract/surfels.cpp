@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "stages/extract/main_plane.hpp"
 #include "stages/geometry/parallel.hpp"
 
 namespace seampath::detail {
@@ -99,20 +100,6 @@ private:
     std::vector<char> turned_;
 };
 
-// Whether a ray from p along d meets the scan beyond `start`, by steps of half a cell through the occupied cells.
-bool blocked(const PointGrid& grid, const Eigen::Vector3d& p, const Eigen::Vector3d& d, double start, double end) {
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(grid.cell() * 0.5);
-    for (double x = start; x < end; x += grid.cell()) {
-        bool hit = false;
-        const Eigen::Vector3d q = p + x * d;
-        grid.for_cells_in_box(q - half, q + half, [&](std::size_t cell) { hit |= grid.points(cell).size() > 2; });
-        if (hit) {
-            return true;
-        }
-    }
-    return false;
-}
-
 void orient_to_sensor(Surfels& surfels, const Eigen::Vector3d& sensor) {
     for (Surfel& s : surfels.at) {
         if (s.n.dot(sensor - s.p) < 0) {
@@ -199,76 +186,6 @@ double turn_outwards(Surfels& surfels, const PointGrid& grid) {
            size[static_cast<std::size_t>(largest)];
 }
 
-// The plane that holds most surfels: the plate that the part is, or the table that it lies on.
-struct MainPlane {
-    Eigen::Vector3d n{0, 0, 0};
-    double d = 0, share = 0;
-    bool holds(const Surfel& s, double reach) const {
-        return std::abs(n.dot(s.p) - d) < reach && std::abs(n.dot(s.n)) > 0.9;
-    }
-};
-
-MainPlane main_plane(const Surfels& surfels, double reach) {
-    constexpr std::size_t kCandidates = 120;
-    std::vector<MainPlane> planes(std::min(kCandidates, surfels.at.size()));
-    parallel_for(planes.size(), 4, [&](std::size_t k) {
-        const Surfel& s = surfels.at[(2 * k + 1) * surfels.at.size() / (2 * planes.size())];
-        MainPlane plane{s.n, s.n.dot(s.p), 0};
-        for (const Surfel& q : surfels.at) {
-            plane.share += plane.holds(q, reach);
-        }
-        plane.share /= static_cast<double>(surfels.at.size());
-        planes[k] = plane;
-    });
-    return *std::max_element(planes.begin(), planes.end(),
-                             [](const MainPlane& a, const MainPlane& b) { return a.share < b.share; });
-}
-
-// Where one plane is much of the scan and nearly all else lies on one side of it, that side is the air: parts stand on
-// plates and tables, and nothing is seen through them. Pieces without a share in the plane keep their turn.
-bool turn_to_side_of_main_plane(Surfels& surfels, const PointGrid& grid) {
-    const double cell = grid.cell();
-    constexpr double kMain = 0.25, kOneSide = 0.85;
-    MainPlane plane = main_plane(surfels, cell);
-    double above = 0, below = 0;
-    for (const Surfel& s : surfels.at) {
-        const double height = plane.n.dot(s.p) - plane.d;
-        above += height > 3 * cell;
-        below += height < -3 * cell;
-    }
-    if (plane.share < kMain || above + below == 0 || std::max(above, below) < kOneSide * (above + below)) {
-        return false;
-    }
-    if (below > above) {
-        plane.n = -plane.n;
-        plane.d = -plane.d;
-    }
-    // The other face of a plate lies behind all of it; what stands on a plate, before a part of it.
-    std::size_t members = 0, covered = 0;
-    for (std::size_t i = 0; i < surfels.at.size(); i += 7) {
-        if (plane.holds(surfels.at[i], grid.cell())) {
-            ++members;
-            covered += blocked(grid, surfels.at[i].p, plane.n, 2 * grid.cell(), 400 * grid.cell());
-        }
-    }
-    if (2 * covered > members) {
-        return false;
-    }
-    std::vector<double> sum(surfels.at.size(), 0);
-    for (const Surfel& s : surfels.at) {
-        if (plane.holds(s, cell)) {
-            sum[s.piece] += s.n.dot(plane.n);
-        }
-    }
-    for (Surfel& s : surfels.at) {
-        s.decided = s.decided || sum[s.piece] != 0;
-        if (sum[s.piece] < 0) {
-            s.n = -s.n;
-        }
-    }
-    return true;
-}
-
 }  // namespace
 
 Surfels make_surfels(const PointGrid& grid, double radius) {
@@ -310,8 +227,9 @@ void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
     make_consistent(surfels);
     const double clearness = turn_outwards(surfels, grid);
     const auto open = std::count_if(surfels.at.begin(), surfels.at.end(), [](const Surfel& s) { return !s.decided; });
-    if (clearness < kClear && turn_to_side_of_main_plane(surfels, grid)) {
-        surfels.orientation_reason = "air side is the side of the main plane on which the rest of the scan lies";
+    const auto side = clearness < kClear ? turn_to_side_of_main_plane(surfels, grid) : std::nullopt;
+    if (side) {
+        surfels.orientation_reason = *side;
     } else if (2 * static_cast<std::size_t>(open) < surfels.at.size()) {
         surfels.orientation_reason = "air side is the one to which the surfaces are open";
     } else {

@@ -40,9 +40,12 @@ Extraction random_extraction(Numbers& n) {
     Extraction e;
     e.seams.resize(n.below(4));
     for (auto& seam : e.seams) {
-        seam = {static_cast<JointKind>(n.below(6)), n.flip(), n.any(), {}};
+        seam = {static_cast<JointKind>(n.below(6)), n.flip(), n.any(), "two surfaces\n", {}, {}};
         for (std::size_t i = 0; i < 20; ++i) {
             seam.points.push_back({n.vector(), n.vector(), n.vector(), n.any(), n.flip()});
+            const auto measured = [&] { return Measured{n.any(), n.any()}; };
+            seam.groove.push_back(
+                {measured(), measured(), measured(), measured(), measured(), measured(), measured(), measured()});
         }
     }
     e.spacing_mm = n.any();

@@ -1,0 +1,193 @@
+#include "stages/extract/main_plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "stages/geometry/parallel.hpp"
+#include "stages/geometry/robust.hpp"
+
+namespace seampath::detail {
+namespace {
+
+// The plane that holds most surfels: the plate that the part is, or the table that it lies on.
+struct MainPlane {
+    Eigen::Vector3d n{0, 0, 0};
+    double d = 0, share = 0;
+    bool holds(const Surfel& s, double reach) const {
+        return std::abs(n.dot(s.p) - d) < reach && std::abs(n.dot(s.n)) > 0.9;
+    }
+};
+
+MainPlane main_plane(const Surfels& surfels, double reach) {
+    constexpr std::size_t kCandidates = 120;
+    std::vector<MainPlane> planes(std::min(kCandidates, surfels.at.size()));
+    parallel_for(planes.size(), 4, [&](std::size_t k) {
+        const Surfel& s = surfels.at[(2 * k + 1) * surfels.at.size() / (2 * planes.size())];
+        MainPlane plane{s.n, s.n.dot(s.p), 0};
+        for (const Surfel& q : surfels.at) {
+            plane.share += plane.holds(q, reach);
+        }
+        plane.share /= static_cast<double>(surfels.at.size());
+        planes[k] = plane;
+    });
+    return *std::max_element(planes.begin(), planes.end(),
+                             [](const MainPlane& a, const MainPlane& b) { return a.share < b.share; });
+}
+
+// Walls that stand on the plane, along its outline and elsewhere.
+struct Walls {
+    double along_outline = 0, inside = 0;  // surfels at their feet
+    double height = 0;                     // of those along the outline, mm
+    bool are_edges = false;                // the plane's own
+};
+
+// How far a wall goes on from its foot along `up`, mm.
+double height_of_wall(const Surfels& surfels, const PointGrid& grid, const Surfel& foot, const Eigen::Vector3d& up,
+                      double most) {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(grid.cell());
+    double height = 0;
+    for (double u = grid.cell(); u < most && u < height + 3 * grid.cell(); u += grid.cell()) {
+        const Eigen::Vector3d q = foot.p + u * up;
+        grid.for_cells_in_box(q - half, q + half, [&](std::size_t j) {
+            if (std::abs(surfels.at[j].n.dot(up)) < 0.5) {
+                height = u;
+            }
+        });
+    }
+    return height;
+}
+
+// Whether the plane is seen on the far side of a wall whose foot is at p, too; `out` points there.
+bool goes_on_behind(const Surfels& surfels, const PointGrid& grid, const MainPlane& plane, const Eigen::Vector3d& p,
+                    const Eigen::Vector3d& out, double reach) {
+    const double cell = grid.cell();
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(cell), foot = p - (plane.n.dot(p) - plane.d) * plane.n;
+    int seen = 0;
+    for (double u = 3 * cell; u < reach && seen < 3; u += cell) {
+        bool here = false;
+        const Eigen::Vector3d q = foot + u * out;
+        grid.for_cells_in_box(q - half, q + half,
+                              [&](std::size_t j) { here = here || plane.holds(surfels.at[j], cell); });
+        seen += here;
+    }
+    return seen >= 3;
+}
+
+// Across the shorter way, of the rectangle that spreads as these points of a plane do.
+double width_of(const std::vector<Eigen::Vector3d>& members) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : members) {
+        mean += p / static_cast<double>(members.size());
+    }
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const auto& p : members) {
+        spread += (p - mean) * (p - mean).transpose() / static_cast<double>(members.size());
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread, Eigen::EigenvaluesOnly);
+    return std::sqrt(12 * std::max(0.0, solver.eigenvalues()[1]));
+}
+
+// The walls on the side of the plane's normal.
+Walls walls_on(const Surfels& surfels, const PointGrid& grid, const MainPlane& plane) {
+    constexpr double kLow = 0.2;  // of the plane's width; a higher wall may be a part of its own
+    const double cell = grid.cell(), reach = 400 * cell;
+    Walls walls;
+    std::vector<double> heights;
+    std::vector<Eigen::Vector3d> members;
+    for (std::size_t i = 0; i < surfels.at.size(); ++i) {
+        const Surfel& s = surfels.at[i];
+        const double height = plane.n.dot(s.p) - plane.d;
+        if (plane.holds(s, cell)) {
+            members.push_back(s.p);
+        }
+        if (height < 1.5 * cell || height > 4 * cell || std::abs(s.n.dot(plane.n)) > 0.5) {
+            continue;
+        }
+        // Which way the plane lies from the foot of the wall.
+        Eigen::Vector3d towards = Eigen::Vector3d::Zero();
+        for (const std::uint32_t j : s.neighbours) {
+            if (plane.holds(surfels.at[j], cell)) {
+                towards += surfels.at[j].p - s.p;
+            }
+        }
+        towards -= towards.dot(plane.n) * plane.n;
+        if (towards.norm() < cell) {
+            continue;
+        }
+        if (goes_on_behind(surfels, grid, plane, s.p, -towards.normalized(), reach)) {
+            walls.inside += 1;
+        } else {
+            walls.along_outline += 1;
+            heights.push_back(height_of_wall(surfels, grid, s, plane.n, reach) + height);
+        }
+    }
+    walls.height = quantile(heights, 0.5);
+    walls.are_edges = walls.along_outline > walls.inside && walls.height < kLow * width_of(members);
+    return walls;
+}
+
+}  // namespace
+
+// Whether a ray from p along d meets the scan beyond `start`, by steps of half a cell through the occupied cells.
+bool blocked(const PointGrid& grid, const Eigen::Vector3d& p, const Eigen::Vector3d& d, double start, double end) {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(grid.cell() * 0.5);
+    for (double x = start; x < end; x += grid.cell()) {
+        bool hit = false;
+        const Eigen::Vector3d q = p + x * d;
+        grid.for_cells_in_box(q - half, q + half, [&](std::size_t cell) { hit |= grid.points(cell).size() > 2; });
+        if (hit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::optional<std::string> turn_to_side_of_main_plane(Surfels& surfels, const PointGrid& grid) {
+    const double cell = grid.cell();
+    constexpr double kMain = 0.25, kOneSide = 0.85;
+    MainPlane plane = main_plane(surfels, cell);
+    double above = 0, below = 0;
+    for (const Surfel& s : surfels.at) {
+        const double height = plane.n.dot(s.p) - plane.d;
+        above += height > 3 * cell;
+        below += height < -3 * cell;
+    }
+    if (plane.share < kMain || above + below == 0 || std::max(above, below) < kOneSide * (above + below)) {
+        return std::nullopt;
+    }
+    if (below > above) {
+        plane.n = -plane.n;
+        plane.d = -plane.d;
+    }
+    // The other face of a plate lies behind all of it; what stands on a plate, before a part of it.
+    std::size_t members = 0, covered = 0;
+    for (std::size_t i = 0; i < surfels.at.size(); i += 7) {
+        if (plane.holds(surfels.at[i], grid.cell())) {
+            ++members;
+            covered += blocked(grid, surfels.at[i].p, plane.n, 2 * grid.cell(), 400 * grid.cell());
+        }
+    }
+    if (2 * covered > members) {
+        return std::nullopt;
+    }
+    const bool edges = walls_on(surfels, grid, plane).are_edges;
+    const double air = edges ? -1 : 1;
+    std::vector<double> sum(surfels.at.size(), 0);
+    for (const Surfel& s : surfels.at) {
+        if (plane.holds(s, cell)) {
+            sum[s.piece] += air * s.n.dot(plane.n);
+        }
+    }
+    for (Surfel& s : surfels.at) {
+        s.decided = s.decided || sum[s.piece] != 0;
+        if (sum[s.piece] < 0) {
+            s.n = -s.n;
+        }
+    }
+    return edges ? "air side of the main plane is the one to which its outline has no edges"
+                 : "air side is the side of the main plane on which the rest of the scan lies";
+}
+
+}  // namespace seampath::detail

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "datasets/dataset.hpp"
+#include "tests/extract/support.hpp"
+
+/// Which side of a scan is the air, where the file does not say.
+namespace seampath {
+namespace {
+
+using Eigen::Vector3d;
+
+Scan scan_of(const Dataset& dataset) {
+    return scan_of_points({dataset.points.begin(), dataset.points.end()});
+}
+
+/// A face of `a` by `b` mm from a corner.
+void add_face(std::vector<Eigen::Vector3f>& points, const Vector3d& corner, const Vector3d& a, const Vector3d& b,
+              std::uint64_t stream) {
+    constexpr double kPitch = 0.4, kNoise = 0.04;
+    const Random random(7, stream);
+    const Vector3d n = a.cross(b).normalized();
+    std::uint64_t draw = 0;
+    for (double u = 0; u < a.norm(); u += kPitch) {
+        for (double v = 0; v < b.norm(); v += kPitch) {
+            const Vector3d p = corner + u * a.normalized() + v * b.normalized() + kNoise * random.normal(draw++) * n;
+            points.push_back(p.cast<float>());
+        }
+    }
+}
+
+/// A floor of 100 by 80 mm and the two long walls beside it, seen from within the channel.
+Scan channel(double height) {
+    std::vector<Eigen::Vector3f> points;
+    add_face(points, {0, 0, 0}, {100, 0, 0}, {0, 80, 0}, 1);
+    add_face(points, {0, 0, 0}, {100, 0, 0}, {0, 0, height}, 2);
+    add_face(points, {0, 80, 0}, {100, 0, 0}, {0, 0, height}, 3);
+    return scan_of_points(std::move(points));
+}
+
+class PlatesWithEdges : public testing::TestWithParam<std::tuple<SceneKind, std::uint64_t>> {};
+
+TEST_P(PlatesWithEdges, AreNotTakenForPans) {
+    SceneOptions scene;
+    scene.kind = std::get<0>(GetParam());
+    ScannerOptions scanner;
+    scanner.pitch_x_mm = scanner.pitch_y_mm = 0.5;
+    const Dataset dataset = make_dataset(scene, scanner, std::get<1>(GetParam()));
+    const Extraction extraction = extract(scan_of(dataset), {});
+    std::size_t outwards = 0, inwards = 0;
+    for (const Seam& seam : extraction.seams) {
+        for (const SeamPoint& point : seam.points) {
+            for (const TruthSeam& truth : dataset.truth.seams) {
+                for (const TruthPoint& at : truth.points) {
+                    if ((at.p - point.p).norm() < 0.5) {
+                        ((at.n1 + at.n2).dot(point.n1 + point.n2) > 0 ? outwards : inwards) += 1;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(outwards, 0u);
+    EXPECT_EQ(inwards, 0u) << extraction.orientation_reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PlatesWithEdges,
+                         testing::Combine(testing::Values(SceneKind::lap, SceneKind::multi),
+                                          testing::Values(std::uint64_t{1}, std::uint64_t{2})));
+
+TEST(Channel, WithHighWallsHasTwoFillets) {
+    EXPECT_EQ(extract(channel(30), {}).seams.size(), 2u);
+}
+
+TEST(Channel, WithLipsIsTakenForAPlateWithEdges) {
+    const Extraction extraction = extract(channel(8), {});
+    EXPECT_EQ(extraction.seams.size(), 0u);
+    EXPECT_NE(extraction.orientation_reason.find("its outline has no edges"), std::string::npos)
+        << extraction.orientation_reason;
+}
+
+}  // namespace
+}  // namespace seampath
