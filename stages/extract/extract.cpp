@@ -63,6 +63,9 @@ Fields describe(ExtractOptions& o) {
     return {
         {"joint", choice(o.joint, kJointChoiceNames), "joint kind to look for; auto: by what is seen"},
         {"convex", &o.convex, "auto also reports convex edges, as corner joints: every block has some"},
+        {"max_thickness_mm", &o.max_thickness_mm,
+         "a convex edge with a face no wider than this is a plate's rim, no corner joint; 0: a third of the other face",
+         at_least(0)},
         {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
         {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
 }
@@ -101,8 +104,7 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
                             options.station_mm > 0 ? options.station_mm : grid.cell()};
     const Around around{scan, grid, field, surfels, creases, following};
 
-    Folds folds =
-        find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options.min_length_mm);
+    Folds folds = find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options);
     result.registration_mm = folds.registration_mm;
     take(result, std::move(folds.seams), std::move(folds.remarks));
     if (asked(options, JointChoice::fillet)) {

@@ -16,8 +16,9 @@ inline constexpr std::array<std::string_view, 7> kJointChoiceNames{"auto",     "
 struct ExtractOptions {
     JointChoice joint = JointChoice::automatic;
     bool convex = false;
-    double min_length_mm = 0;  ///< 0: from the scan
-    double station_mm = 0;     ///< 0: from the scan
+    double max_thickness_mm = 0;  ///< of plates whose rims are no corners; 0: by the faces' widths
+    double min_length_mm = 0;     ///< 0: from the scan
+    double station_mm = 0;        ///< 0: from the scan
 };
 Fields describe(ExtractOptions&);
 

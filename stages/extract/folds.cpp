@@ -6,6 +6,7 @@
 #include "stages/extract/join.hpp"
 #include "stages/extract/measure.hpp"
 #include "stages/extract/registration.hpp"
+#include "stages/extract/rims.hpp"
 #include "stages/extract/track.hpp"
 #include "stages/extract/whole.hpp"
 #include "stages/geometry/robust.hpp"
@@ -54,33 +55,14 @@ std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>&
     return tracks;
 }
 
-template <class Points, class Position>
-double length_of(const Points& points, Position&& position) {
-    double length = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        length += (position(points[i]) - position(points[i - 1])).norm();
-    }
-    return length;
-}
-
-// A track that turned out to be a joint.
-struct Fold {
-    std::vector<TrackPoint> way;
-    bool closed = false;
-    bool convex = false;  // `way` is inside out
-};
-
 // The joints among the tracks; of the others a remark says why they are none.
 std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length,
                               std::vector<std::string>& remarks) {
-    const auto length = [](const std::vector<TrackPoint>& way) {
-        return length_of(way, [](const TrackPoint& p) { return p.section.p; });
-    };
     std::vector<Fold> joints;
     for (const Track& track : tracks) {
         const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
         const double least = min_length > 0 ? min_length : kLeastLength * spacing;
-        double found = length(track.points);
+        double found = length_of(track.points);
         if (found >= least) {
             auto way = measure_track(tracker, track);
             if (!way) {
@@ -88,7 +70,7 @@ std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& 
                                   " mm was left out: its flanks are too narrow or too rough for a joint");
                 continue;
             }
-            found = length(*way);
+            found = length_of(*way);
             if (found >= least) {
                 joints.push_back({std::move(*way), track.closed});
                 continue;
@@ -121,7 +103,7 @@ Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
-Folds find_folds(const Around& around, bool concave, bool convex, double min_length_mm) {
+Folds find_folds(const Around& around, bool concave, bool convex, const ExtractOptions& options) {
     const Tracker& following = around.following;
     Folds result;
     std::vector<Fold> folds;
@@ -130,7 +112,11 @@ Folds find_folds(const Around& around, bool concave, bool convex, double min_len
             continue;
         }
         const auto tracks = join_tracks(following, follow_all(following, seeds_of(around.creases, inside_out)));
-        for (Fold& fold : measure_all(following, tracks, min_length_mm, result.remarks)) {
+        std::vector<Fold> joints = measure_all(following, tracks, options.min_length_mm, result.remarks);
+        if (inside_out) {
+            leave_out_rims(around, options.max_thickness_mm, joints, result.remarks);
+        }
+        for (Fold& fold : joints) {
             fold.convex = inside_out;
             folds.push_back(std::move(fold));
         }

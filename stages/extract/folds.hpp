@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "stages/extract/around.hpp"
+#include "stages/extract/extract.hpp"
 #include "stages/types.hpp"
 
 namespace seampath::detail {
@@ -15,7 +16,7 @@ struct Folds {
     std::vector<std::string> remarks;
 };
 
-/// Fillets (`concave`) and corners (`convex`) at least `min_length_mm` long; 0: as long as tells a joint from chance.
-Folds find_folds(const Around& around, bool concave, bool convex, double min_length_mm);
+/// Fillets (`concave`) and corners (`convex`), of which plates' rims are left out.
+Folds find_folds(const Around& around, bool concave, bool convex, const ExtractOptions& options);
 
 }  // namespace seampath::detail

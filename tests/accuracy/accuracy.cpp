@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "pipeline/config.hpp"
 #include "tests/accuracy/measure.hpp"
 
 namespace {
@@ -14,9 +15,10 @@ namespace {
 using namespace seampath;
 
 constexpr const char* kHeader =
-    "                                      extracted, mm         fitted, mm            found  false  twice  end    "
-    "share below   validate          time, s\n"
-    "scene                seed   points n  rms    p95    max     rms    p95    max     %      %      %      mm     "
+    "                                      extracted, mm         fitted, mm            found  false  twice  kind   "
+    "end    share below   validate          time, s\n"
+    "scene                seed   points n  rms    p95    max     rms    p95    max     %      %      %      wrong% "
+    "mm     "
     "1sig   2sig   rms    cover  ok  extract  all\n";
 
 /// Of the scenes, those that stand first are fillets and saddles.
@@ -27,6 +29,7 @@ struct Asked {
     std::uint64_t first_seed = 1;
     int seeds = 5;
     std::string preset = "standard";
+    std::vector<std::string> set;
 };
 
 /// Worst of every column; 'n' and 'ok' are sums.
@@ -38,6 +41,7 @@ Accuracy worst_of(const std::vector<Accuracy>& all) {
         a.found = std::min(a.found, b.found);
         a.false_share = std::max(a.false_share, b.false_share);
         a.repeated_share = std::max(a.repeated_share, b.repeated_share);
+        a.wrong_kind_share = std::max(a.wrong_kind_share, b.wrong_kind_share);
         a.end_errors_mm.insert(a.end_errors_mm.end(), b.end_errors_mm.begin(), b.end_errors_mm.end());
         return a;
     };
@@ -61,12 +65,14 @@ void print_row(const std::string& scene, const std::string& seed, const Accuracy
     const Score& e = a.extracted;
     const Score& f = a.fitted;
     std::printf(
-        "%-20s %4s %8zu %zu  %.4f %.4f %.4f  %.4f %.4f %.4f  %6.2f %6.2f %6.2f %6.2f  %.3f  %.3f  %.4f %.3f %zu/%zu  "
+        "%-20s %4s %8zu %zu  %.4f %.4f %.4f  %.4f %.4f %.4f  %6.2f %6.2f %6.2f %6.2f %6.2f  %.3f  %.3f  %.4f %.3f "
+        "%zu/%zu  "
         "%7.2f %6.2f",
         scene.c_str(), seed.c_str(), a.points, a.seams, e.rms_mm, e.p95_mm, e.max_mm, f.rms_mm, f.p95_mm, f.max_mm,
         100 * std::min(e.found, f.found), 100 * std::max(e.false_share, f.false_share),
-        100 * std::max(e.repeated_share, f.repeated_share), std::max(worst_end(e), worst_end(f)), a.within_1_sigma,
-        a.within_2_sigma, a.validated_rms_mm, a.least_coverage, a.passed, a.seams, a.extract_s, a.stages_s);
+        100 * std::max(e.repeated_share, f.repeated_share), 100 * e.wrong_kind_share,
+        std::max(worst_end(e), worst_end(f)), a.within_1_sigma, a.within_2_sigma, a.validated_rms_mm, a.least_coverage,
+        a.passed, a.seams, a.extract_s, a.stages_s);
     for (const std::string& miss : missed(a, limits)) {
         std::printf("  * %s", miss.c_str());
     }
@@ -82,7 +88,18 @@ std::vector<Accuracy> measure_scene(const Asked& asked, const std::string& scene
         SceneOptions options;
         const auto found = std::find(kSceneNames.begin(), kSceneNames.end(), scene);
         options.kind = static_cast<SceneKind>(found - kSceneNames.begin());
-        all.push_back(measure_accuracy(make_dataset(options, preset(asked.preset), seed)));
+        ScannerOptions scanner = preset(asked.preset);
+        ExtractOptions extraction;
+        // Corners are looked for only when they are asked for.
+        extraction.joint = options.kind == SceneKind::corner ? JointChoice::corner : JointChoice::automatic;
+        std::vector<Override> overrides;
+        for (const std::string& text : asked.set) {
+            overrides.push_back(parse_override(text));
+        }
+        apply_overrides(
+            {{"scene", describe(options)}, {"scanner", describe(scanner)}, {"extract", describe(extraction)}},
+            overrides);
+        all.push_back(measure_accuracy(make_dataset(options, scanner, seed), extraction));
         print_row(scene, std::to_string(seed), all.back(), limits);
     }
     return all;
@@ -123,6 +140,8 @@ int main(int argc, char** argv) {
     app.add_option("--preset", asked.preset, "scanner")
         ->check(CLI::IsMember(std::vector<std::string>(kPresetNames.begin(), kPresetNames.end())))
         ->capture_default_str();
+    app.add_option("--set", asked.set, "scene.key=value, scanner.key=value or extract.key=value")
+        ->allow_extra_args(false);
     CLI11_PARSE(app, argc, argv);
     try {
         return run(asked);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "stages/extract/extract.hpp"
 #include "stages/fit/fit.hpp"
 #include "stages/place/place.hpp"
 #include "stages/text.hpp"
@@ -65,13 +64,13 @@ Scan scan_of(const Dataset& dataset) {
     return scan;
 }
 
-Accuracy measure_accuracy(const Dataset& dataset) {
+Accuracy measure_accuracy(const Dataset& dataset, const ExtractOptions& options) {
     Accuracy a;
     a.scene = dataset.scene.kind;
     a.seed = dataset.seed;
     const Scan scan = scan_of(dataset);
     const auto start = std::chrono::steady_clock::now();
-    const Extraction extraction = extract(scan, {});
+    const Extraction extraction = extract(scan, options);
     a.extract_s = seconds_since(start);
     std::vector<SeamModel> models;
     for (const Seam& seam : extraction.seams) {

@@ -7,6 +7,7 @@
 
 #include "datasets/dataset.hpp"
 #include "datasets/score.hpp"
+#include "stages/extract/extract.hpp"
 #include "stages/types.hpp"
 
 /// From a made scan to its score: what the accuracy program prints and the tests hold.
@@ -41,8 +42,8 @@ struct Accuracy {
 
 Scan scan_of(const Dataset& dataset);
 
-/// Extracts, places, fits and validates with default options, and compares with the truth.
-Accuracy measure_accuracy(const Dataset& dataset);
+/// Extracts, places, fits and validates, and compares with the truth. All other stages have their default options.
+Accuracy measure_accuracy(const Dataset& dataset, const ExtractOptions& options = {});
 
 /// Largest error of an open seam's ends, mm; 0 without open seams.
 double worst_end(const Score& score);
