@@ -14,6 +14,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLeastBend = 5 * kDegree;  // flatter than this two flanks are one surface to a welder
 constexpr double kMostTurn = 35 * kDegree;  // of a flank normal against its prediction, per step
 constexpr double kLeastSupport = 0.1;       // of the density that the flank had so far: four views may become one
+constexpr double kCorner = 45 * kDegree;    // of a flank normal over the next number of steps
+constexpr std::size_t kCornerSteps = 3;
 constexpr std::size_t kMostSteps = 200000;
 
 bool similar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle) {
@@ -90,6 +92,16 @@ std::vector<FlankSample> slab_of(const Tracker& tracker, const SectionFit& at, i
     return slab;
 }
 
+// Whether the way has just turned from one flank onto another: faster than on the smallest bend that windows can
+// follow.
+bool turns_corner(const std::vector<TrackPoint>& way) {
+    if (way.size() <= kCornerSteps) {
+        return false;
+    }
+    const Section &now = way.back().section, &before = way[way.size() - 1 - kCornerSteps].section;
+    return !similar(now.n1, before.n1, kCorner) || !similar(now.n2, before.n2, kCorner);
+}
+
 enum class End { open, closed };
 
 // Extends `way` in one direction (+1: along n1 x n2) as far as the joint is measured. Coming back to its own course it
@@ -111,6 +123,10 @@ End advance(const Tracker& tracker, std::vector<TrackPoint>& way, double directi
             }
         }
         way.push_back(*point);
+        if (turns_corner(way)) {
+            way.resize(way.size() - kCornerSteps);
+            return End::open;
+        }
     }
     return End::open;
 }

@@ -56,6 +56,39 @@ TEST_P(AccuracyOf, SeamsAndModelsHoldTheLimits) {
     EXPECT_EQ(accuracy.passed, accuracy.seams) << "validated rms " << accuracy.validated_rms_mm;
 }
 
+class AccuracyOfCorners : public testing::TestWithParam<std::tuple<Course, std::uint64_t>> {};
+INSTANTIATE_TEST_SUITE_P(Courses, AccuracyOfCorners,
+                         testing::Combine(testing::Values(Course::straight, Course::arc),
+                                          testing::Values(std::uint64_t{51}, std::uint64_t{52})));
+
+TEST_P(AccuracyOfCorners, IsThatOfTheJointAndNotOfAnyRim) {
+    const auto [course, seed] = GetParam();
+    SceneOptions scene;
+    scene.kind = SceneKind::corner;
+    scene.course = course;
+    ExtractOptions options;
+    options.joint = JointChoice::corner;
+    const Accuracy accuracy = measure_accuracy(make_dataset(scene, {}, seed), options);
+    EXPECT_THAT(missed(accuracy, {0.02, 0.05, 0.99, 0, 1.5}), testing::IsEmpty());
+    EXPECT_EQ(accuracy.seams, 1u);
+    EXPECT_EQ(accuracy.extracted.wrong_kind_share, 0);
+    EXPECT_EQ(accuracy.passed, 1u);
+}
+
+TEST(Corners, AreNotReportedUnlessAskedFor) {
+    SceneOptions scene;
+    scene.kind = SceneKind::corner;
+    scene.length_mm = 60;
+    ScannerOptions scanner;
+    scanner.views = 3;
+    const Scan scan = scan_of(make_dataset(scene, scanner, 53));
+    EXPECT_TRUE(extract(scan, {}).seams.empty());
+    ExtractOptions convex;
+    convex.convex = true;
+    ASSERT_EQ(extract(scan, convex).seams.size(), 1u);
+    EXPECT_EQ(extract(scan, convex).seams[0].kind, JointKind::corner);
+}
+
 TEST(Missed, NamesEachLimit) {
     Accuracy accuracy;
     accuracy.extracted = accuracy.fitted = {0.01, 0.02, 0.05, 1, 0, 0, {0.3, 0.2}};
