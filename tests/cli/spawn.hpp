@@ -67,7 +67,7 @@ public:
 
     /// Waits until `text` stands on stderr; false if it ends or half a minute passes before.
     bool wait_for_err(const std::string& text) {
-        for (int i = 0; i < 6000 && err().find(text) == std::string::npos; ++i) {
+        for (int i = 0; i < 6000 * SEAMPATH_SLOWDOWN && err().find(text) == std::string::npos; ++i) {
             if (waitpid(pid_, &raw_status_, WNOHANG) == pid_) {
                 ended_ = true;
                 return err().find(text) != std::string::npos;

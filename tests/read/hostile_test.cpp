@@ -61,7 +61,7 @@ TEST(ReadHostile, EveryFileOfTheCorpusIsAScanOrAnErrorWithinASecond) {
         const auto begin = std::chrono::steady_clock::now();
         const bool scan = is_scan(seed.bytes, seed.format);
         is_scan(seed.bytes, seed.format, Unit::automatic);
-        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(SEAMPATH_SLOWDOWN));
         const std::string_view file = std::string_view(seed.name).substr(seed.name.find('/') + 1);
         if (file.starts_with("good_")) {
             EXPECT_TRUE(scan);
