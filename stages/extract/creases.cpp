@@ -144,7 +144,9 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
 }
 
 // Both planes well supported, bent enough, and each only on its own side of the line: a fold, no step and no crossing.
-std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, const Points& x, const Split& split) {
+std::optional<Crease> as_crease(const Surfels& surfels, std::span<const std::uint32_t> neighbours, const Points& x,
+                                const Split& split) {
+    const Surfel& centre = surfels.at[neighbours.front()];
     const auto n = static_cast<double>(x.size());
     if (static_cast<double>(split.unexplained) > kMostUnexplained * n ||
         static_cast<double>(std::min(split.member[0].size(), split.member[1].size())) <
@@ -156,7 +158,7 @@ std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, co
     for (int k = 0; k < 2; ++k) {
         double sign = 0;
         for (const std::size_t i : split.member[k]) {
-            sign += split.plane[k].n.dot(surfels.at[centre.neighbours[i]].n);
+            sign += split.plane[k].n.dot(surfels.at[neighbours[i]].n);
         }
         normal[k] = sign < 0 ? -split.plane[k].n : split.plane[k].n;
     }
@@ -211,16 +213,17 @@ std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field
         // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain. One of two
         // surfaces may be seen at a slant, and be noisier than the place as a whole.
         const double least = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
-        if (s.neighbours.size() < 20 || s.flatness < 0.75 * least) {
+        const auto neighbours = surfels.neighbours[i];
+        if (neighbours.size() < 20 || s.flatness < 0.75 * least) {
             return;
         }
         Points x;
-        for (const std::uint32_t j : s.neighbours) {
+        for (const std::uint32_t j : neighbours) {
             x.push_back(surfels.at[j].p - s.p);
         }
         for (const double tolerance : {least, 2 * least}) {
             const auto split = two_planes(x, surfels.radius, tolerance, i);
-            found[i] = split ? as_crease(surfels, s, x, *split) : std::nullopt;
+            found[i] = split ? as_crease(surfels, neighbours, x, *split) : std::nullopt;
             if (found[i] || s.flatness < 0.75 * 2 * least) {
                 return;
             }
