@@ -13,6 +13,7 @@ namespace seampath::detail {
 namespace {
 
 constexpr int kTrials = 48;  // a half of the surfels on one plane: failure chance (1 - 1/8)^48 = 0.2 %
+constexpr double kFailure = 0.002;
 constexpr double kLeastBend = 20 * std::numbers::pi / 180;
 constexpr double kLeastShare = 0.15;  // of the neighbours, on each plane
 constexpr double kMostUnexplained = 0.25;
@@ -43,11 +44,19 @@ std::optional<Plane> through(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
     return Plane{n / area, n.dot(a) / area};
 }
 
+// Trials after which a plane that holds `count` of `all` points has been missed with a chance of kFailure (Fischler &
+// Bolles 1981).
+int trials_enough(std::size_t count, std::size_t all) {
+    const double share = static_cast<double>(count) / static_cast<double>(all), hit = share * share * share;
+    return hit < 1 ? static_cast<int>(std::ceil(std::log(kFailure) / std::log1p(-hit))) : 1;
+}
+
 // The plane with most points within `tolerance`.
 std::optional<Plane> consensus_plane(const Points& x, double tolerance, double least_area, std::uint64_t stream) {
     std::optional<Plane> best;
     std::size_t most = 3;
-    for (int trial = 0; trial < kTrials && x.size() > 3; ++trial) {
+    int enough = kTrials;
+    for (int trial = 0; trial < enough && x.size() > 3; ++trial) {
         const auto pick = [&](int k) {
             return mix(stream * 1000003 + static_cast<std::uint64_t>(trial) * 31 +
                        static_cast<std::uint64_t>(k) * 7919) %
@@ -64,6 +73,7 @@ std::optional<Plane> consensus_plane(const Points& x, double tolerance, double l
         if (count > most) {
             most = count;
             best = plane;
+            enough = std::min(kTrials, trials_enough(count, x.size()));
         }
     }
     return best;
