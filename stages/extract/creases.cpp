@@ -125,6 +125,7 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
         return std::nullopt;
     }
     Points rest;
+    rest.reserve(x.size());
     for (const auto& q : x) {
         if (first->distance(q) >= tolerance) {
             rest.push_back(q);
@@ -139,6 +140,7 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
         assign(x, 2 * tolerance, split);
         for (int k = 0; k < 2; ++k) {
             Points members;
+            members.reserve(split.member[k].size());
             for (const std::size_t i : split.member[k]) {
                 members.push_back(x[i]);
             }
@@ -222,12 +224,17 @@ std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field
         const Surfel& s = surfels.at[i];
         // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain. One of two
         // surfaces may be seen at a slant, and be noisier than the place as a whole.
-        const double least = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
+        const double geometric = 0.025 * surfels.radius;
         const auto neighbours = surfels.neighbours[i];
-        if (neighbours.size() < 20 || s.flatness < 0.75 * least) {
+        if (neighbours.size() < 20 || s.flatness < 0.75 * geometric) {
+            return;
+        }
+        const double least = std::max(0.75 * field.at(s.p).noise, geometric);
+        if (s.flatness < 0.75 * least) {
             return;
         }
         Points x;
+        x.reserve(neighbours.size());
         for (const std::uint32_t j : neighbours) {
             x.push_back(surfels.at[j].p - s.p);
         }

@@ -38,10 +38,15 @@ void fit_plane(Surfel& surfel, std::span<const std::uint32_t> neighbours, const 
 // Appends what hangs together with the surfel inside the ball: the other face of a thin wall does not, though it is as
 // near.
 void collect_neighbours(const Surfels& surfels, std::uint32_t i, std::vector<std::uint32_t>& neighbours) {
-    thread_local std::vector<char> seen;  // all zero between calls
-    thread_local std::vector<std::uint32_t> outside;
-    seen.resize(std::max(seen.size(), surfels.at.size()), 0);
+    struct Buffers {
+        std::vector<char> seen;  // all zero between calls
+        std::vector<std::uint32_t> outside;
+    };
+    thread_local Buffers of_thread;
+    auto& [marks, outside] = of_thread;
+    marks.resize(std::max(marks.size(), surfels.at.size()), 0);
     outside.clear();
+    char* const seen = marks.data();
     const Eigen::Vector3d p = surfels.at[i].p;
     const double squared = surfels.radius * surfels.radius;
     const std::size_t begin = neighbours.size();
