@@ -48,12 +48,6 @@ void sort_by_key(std::vector<Entry>& entries, int bits) {
     }
 }
 
-// Calls f(chunk, begin, end) for the chunks of n things, in parallel.
-template <class F>
-void for_chunks(std::size_t n, std::size_t chunks, F&& f) {
-    parallel_for(chunks, 1, [&](std::size_t c) { f(c, c * n / chunks, (c + 1) * n / chunks); });
-}
-
 }  // namespace
 
 // Returns how many points take part.
@@ -63,7 +57,7 @@ std::size_t PointGrid::set_bounds(std::span<const Eigen::Vector3f> points, std::
         std::size_t count = 0;
     };
     std::array<Bounds, kChunks> chunk;
-    for_chunks(points.size(), kChunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    parallel_chunks(points.size(), kChunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
         Bounds b;
         for (std::size_t i = begin; i < end; ++i) {
             if (taken(keep, i)) {
@@ -99,7 +93,7 @@ std::vector<std::uint32_t> PointGrid::sort_into_buckets(std::span<const Eigen::V
     bucket_shift_ = std::max(0, static_cast<int>(std::bit_width(largest)) - static_cast<int>(std::bit_width(most)) + 1);
     const std::size_t buckets = (largest >> bucket_shift_) + 1, chunks = points.size() < kMostBuckets ? 1 : kChunks;
     std::vector<std::vector<std::uint32_t>> count(chunks);
-    for_chunks(points.size(), chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    parallel_chunks(points.size(), chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
         count[c].assign(buckets, 0);
         for (std::size_t i = begin; i < end; ++i) {
             if (taken(keep, i)) {
@@ -116,7 +110,7 @@ std::vector<std::uint32_t> PointGrid::sort_into_buckets(std::span<const Eigen::V
         }
     }
     begin_of[buckets] = sum;
-    for_chunks(points.size(), chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    parallel_chunks(points.size(), chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (taken(keep, i)) {
                 source_[count[c][key_of(points[i]) >> bucket_shift_]++] = static_cast<std::uint32_t>(i);
@@ -154,7 +148,7 @@ PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, double cell, std::
     sorted_.resize(source_.size());
     const std::size_t buckets = begin_of.size() - 1;
     std::vector<Cells> group(kGroups);
-    for_chunks(buckets, kGroups, [&](std::size_t g, std::size_t begin, std::size_t end) {
+    parallel_chunks(buckets, kGroups, [&](std::size_t g, std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             sort_bucket(points, begin_of[b], begin_of[b + 1], group[g]);
         }
