@@ -13,6 +13,7 @@ namespace seampath::detail {
 namespace {
 
 constexpr int kTrials = 48;  // a half of the surfels on one plane: failure chance (1 - 1/8)^48 = 0.2 %
+constexpr double kFailure = 0.002;
 constexpr double kLeastBend = 20 * std::numbers::pi / 180;
 constexpr double kLeastShare = 0.15;  // of the neighbours, on each plane
 constexpr double kMostUnexplained = 0.25;
@@ -43,11 +44,19 @@ std::optional<Plane> through(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
     return Plane{n / area, n.dot(a) / area};
 }
 
+// Trials after which a plane that holds `count` of `all` points has been missed with a chance of kFailure (Fischler &
+// Bolles 1981).
+int trials_enough(std::size_t count, std::size_t all) {
+    const double share = static_cast<double>(count) / static_cast<double>(all), hit = share * share * share;
+    return hit < 1 ? static_cast<int>(std::ceil(std::log(kFailure) / std::log1p(-hit))) : 1;
+}
+
 // The plane with most points within `tolerance`.
 std::optional<Plane> consensus_plane(const Points& x, double tolerance, double least_area, std::uint64_t stream) {
     std::optional<Plane> best;
     std::size_t most = 3;
-    for (int trial = 0; trial < kTrials && x.size() > 3; ++trial) {
+    int enough = kTrials;
+    for (int trial = 0; trial < enough && x.size() > 3; ++trial) {
         const auto pick = [&](int k) {
             return mix(stream * 1000003 + static_cast<std::uint64_t>(trial) * 31 +
                        static_cast<std::uint64_t>(k) * 7919) %
@@ -64,6 +73,7 @@ std::optional<Plane> consensus_plane(const Points& x, double tolerance, double l
         if (count > most) {
             most = count;
             best = plane;
+            enough = std::min(kTrials, trials_enough(count, x.size()));
         }
     }
     return best;
@@ -115,6 +125,7 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
         return std::nullopt;
     }
     Points rest;
+    rest.reserve(x.size());
     for (const auto& q : x) {
         if (first->distance(q) >= tolerance) {
             rest.push_back(q);
@@ -129,6 +140,7 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
         assign(x, 2 * tolerance, split);
         for (int k = 0; k < 2; ++k) {
             Points members;
+            members.reserve(split.member[k].size());
             for (const std::size_t i : split.member[k]) {
                 members.push_back(x[i]);
             }
@@ -144,7 +156,9 @@ std::optional<Split> two_planes(const Points& x, double radius, double tolerance
 }
 
 // Both planes well supported, bent enough, and each only on its own side of the line: a fold, no step and no crossing.
-std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, const Points& x, const Split& split) {
+std::optional<Crease> as_crease(const Surfels& surfels, std::span<const std::uint32_t> neighbours, const Points& x,
+                                const Split& split) {
+    const Surfel& centre = surfels.at[neighbours.front()];
     const auto n = static_cast<double>(x.size());
     if (static_cast<double>(split.unexplained) > kMostUnexplained * n ||
         static_cast<double>(std::min(split.member[0].size(), split.member[1].size())) <
@@ -156,7 +170,7 @@ std::optional<Crease> as_crease(const Surfels& surfels, const Surfel& centre, co
     for (int k = 0; k < 2; ++k) {
         double sign = 0;
         for (const std::size_t i : split.member[k]) {
-            sign += split.plane[k].n.dot(surfels.at[centre.neighbours[i]].n);
+            sign += split.plane[k].n.dot(surfels.at[neighbours[i]].n);
         }
         normal[k] = sign < 0 ? -split.plane[k].n : split.plane[k].n;
     }
@@ -210,17 +224,23 @@ std::vector<Crease> find_creases(const Surfels& surfels, const ScaleField& field
         const Surfel& s = surfels.at[i];
         // Means of cells are quieter than points, but noise is correlated: half of it is taken to remain. One of two
         // surfaces may be seen at a slant, and be noisier than the place as a whole.
-        const double least = std::max(0.75 * field.at(s.p).noise, 0.025 * surfels.radius);
-        if (s.neighbours.size() < 20 || s.flatness < 0.75 * least) {
+        const double geometric = 0.025 * surfels.radius;
+        const auto neighbours = surfels.neighbours[i];
+        if (neighbours.size() < 20 || s.flatness < 0.75 * geometric) {
+            return;
+        }
+        const double least = std::max(0.75 * field.at(s.p).noise, geometric);
+        if (s.flatness < 0.75 * least) {
             return;
         }
         Points x;
-        for (const std::uint32_t j : s.neighbours) {
+        x.reserve(neighbours.size());
+        for (const std::uint32_t j : neighbours) {
             x.push_back(surfels.at[j].p - s.p);
         }
         for (const double tolerance : {least, 2 * least}) {
             const auto split = two_planes(x, surfels.radius, tolerance, i);
-            found[i] = split ? as_crease(surfels, s, x, *split) : std::nullopt;
+            found[i] = split ? as_crease(surfels, neighbours, x, *split) : std::nullopt;
             if (found[i] || s.flatness < 0.75 * 2 * least) {
                 return;
             }

@@ -21,11 +21,18 @@ using namespace detail;
 
 constexpr std::size_t kLeastPoints = 200;
 
-// As fine as the points allow, so that narrow faces are seen; coarser where a large scan would make too many cells.
-double cell_size(const ScanScale& scale, std::size_t points) {
+// Distance of the points of a seam: as fine as the scan's points allow.
+double station_distance(const ScanScale& scale, std::size_t points) {
     constexpr double kCells = 60000;
-    return std::max(std::clamp(std::sqrt(static_cast<double>(points) / kCells), 2.5, 4.0) * scale.spacing,
-                    2 * scale.noise);
+    const double widths = std::clamp(std::sqrt(static_cast<double>(points) / kCells), 2.5, 4.0);
+    return std::max(widths * scale.spacing, 2 * scale.noise);
+}
+
+// Cells as fine as that, so that narrow faces are seen; coarser where a large scan would make too many of them: beyond
+// kMany points, one half of what more points add makes cells finer, and the other half fills them.
+double cell_size(const ScanScale& scale, std::size_t points) {
+    constexpr double kMany = 1.5e6;
+    return station_distance(scale, points) * std::max(1.0, std::pow(static_cast<double>(points) / kMany, 0.25));
 }
 
 // Where nothing told the air from the material of a piece, its joints do: a scan made to find a seam shows more of the
@@ -101,7 +108,7 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
     result.views = static_cast<int>(views.size());
     const Tracker following{grid, field, views, following_window,
-                            options.station_mm > 0 ? options.station_mm : grid.cell()};
+                            options.station_mm > 0 ? options.station_mm : station_distance(scale, scan.points.size())};
     const Around around{scan, grid, field, surfels, creases, following};
 
     Folds folds = find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options);

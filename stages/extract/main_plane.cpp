@@ -107,7 +107,7 @@ Walls walls_on(const Surfels& surfels, const PointGrid& grid, const MainPlane& p
         }
         // Which way the plane lies from the foot of the wall.
         Eigen::Vector3d towards = Eigen::Vector3d::Zero();
-        for (const std::uint32_t j : s.neighbours) {
+        for (const std::uint32_t j : surfels.neighbours[i]) {
             if (plane.holds(surfels.at[j], cell)) {
                 towards += surfels.at[j].p - s.p;
             }

@@ -32,9 +32,9 @@ struct Face {
 };
 
 // Distance of the surfel's points from each other, by how many there are in its neighbourhood.
-double spacing_at(const Surfels& surfels, const PointGrid& grid, const Surfel& s) {
+double spacing_at(const Surfels& surfels, const PointGrid& grid, std::size_t i) {
     double count = 0;
-    for (const std::uint32_t j : s.neighbours) {
+    for (const std::uint32_t j : surfels.neighbours[i]) {
         count += static_cast<double>(grid.points(j).size());
     }
     return std::sqrt(std::numbers::pi * surfels.radius * surfels.radius / std::max(1.0, count));
@@ -46,7 +46,7 @@ std::vector<std::vector<std::uint32_t>> sparse_groups(const Around& around) {
     const double usual = around.field.overall.spacing;
     std::vector<char> open(at.size(), 0);
     for (std::size_t i = 0; i < at.size(); ++i) {
-        const double spacing = spacing_at(around.surfels, around.grid, at[i]);
+        const double spacing = spacing_at(around.surfels, around.grid, i);
         open[i] = spacing > kSparse * usual && spacing < 2 * kTooSparse * usual;  // fewer at a face's rim
     }
     std::vector<std::vector<std::uint32_t>> groups;
@@ -57,7 +57,7 @@ std::vector<std::vector<std::uint32_t>> sparse_groups(const Around& around) {
         std::vector<std::uint32_t> group{i};
         open[i] = 0;
         for (std::size_t k = 0; k < group.size(); ++k) {
-            for (const std::uint32_t j : at[group[k]].neighbours) {
+            for (const std::uint32_t j : around.surfels.neighbours[group[k]]) {
                 if (open[j]) {
                     open[j] = 0;
                     group.push_back(j);

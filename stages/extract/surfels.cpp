@@ -15,43 +15,56 @@ constexpr std::size_t kLeastNeighbours = 6;
 constexpr double kClear = 0.15;  // share of deciding rays that leaves no doubt; strays over a table decide fewer
 constexpr double kTouch = 1.8;   // cells; means of cells that share a corner are mostly nearer
 
-void fit_plane(Surfel& surfel, const std::vector<Surfel>& all) {
-    if (surfel.neighbours.size() < kLeastNeighbours) {
+void fit_plane(Surfel& surfel, std::span<const std::uint32_t> neighbours, const std::vector<Surfel>& all) {
+    if (neighbours.size() < kLeastNeighbours) {
         return;
     }
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const std::uint32_t j : surfel.neighbours) {
+    for (const std::uint32_t j : neighbours) {
         mean += all[j].p;
     }
-    mean /= static_cast<double>(surfel.neighbours.size());
+    mean /= static_cast<double>(neighbours.size());
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-    for (const std::uint32_t j : surfel.neighbours) {
+    for (const std::uint32_t j : neighbours) {
         const Eigen::Vector3d d = all[j].p - mean;
         scatter += d * d.transpose();
     }
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
     solver.computeDirect(scatter);
     surfel.n = solver.eigenvectors().col(0);
-    surfel.flatness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(surfel.neighbours.size()));
+    surfel.flatness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(neighbours.size()));
 }
 
-// What hangs together with the surfel inside the ball: the other face of a thin wall does not, though it is as near.
-void collect_neighbours(Surfels& surfels, std::uint32_t i) {
-    thread_local std::vector<char> seen;  // all zero between calls
-    seen.resize(std::max(seen.size(), surfels.at.size()), 0);
-    Surfel& s = surfels.at[i];
-    s.neighbours = {i};
+// Appends what hangs together with the surfel inside the ball: the other face of a thin wall does not, though it is as
+// near.
+void collect_neighbours(const Surfels& surfels, std::uint32_t i, std::vector<std::uint32_t>& neighbours) {
+    struct Buffers {
+        std::vector<char> seen;  // all zero between calls
+        std::vector<std::uint32_t> outside;
+    };
+    thread_local Buffers of_thread;
+    auto& [marks, outside] = of_thread;
+    marks.resize(std::max(marks.size(), surfels.at.size()), 0);
+    outside.clear();
+    char* const seen = marks.data();
+    const Eigen::Vector3d p = surfels.at[i].p;
+    const double squared = surfels.radius * surfels.radius;
+    const std::size_t begin = neighbours.size();
+    neighbours.push_back(i);
     seen[i] = 1;
-    for (std::size_t k = 0; k < s.neighbours.size(); ++k) {
-        for (const std::uint32_t j : surfels.at[s.neighbours[k]].next) {
-            if (!seen[j] && (surfels.at[j].p - s.p).squaredNorm() <= surfels.radius * surfels.radius) {
+    for (std::size_t k = begin; k < neighbours.size(); ++k) {
+        for (const std::uint32_t j : surfels.next[neighbours[k]]) {
+            if (!seen[j]) {
                 seen[j] = 1;
-                s.neighbours.push_back(j);
+                ((surfels.at[j].p - p).squaredNorm() <= squared ? neighbours : outside).push_back(j);
             }
         }
     }
-    for (const std::uint32_t j : s.neighbours) {
+    for (const std::uint32_t j : outside) {
         seen[j] = 0;
+    }
+    for (std::size_t k = begin; k < neighbours.size(); ++k) {
+        seen[neighbours[k]] = 0;
     }
 }
 
@@ -126,7 +139,7 @@ void make_consistent(Surfels& surfels) {
     std::vector<Surfel>& at = surfels.at;
     std::vector<Edge> edges;
     for (std::uint32_t a = 0; a < at.size(); ++a) {
-        for (const std::uint32_t b : at[a].next) {
+        for (const std::uint32_t b : surfels.next[a]) {
             if (b > a && at[a].n.squaredNorm() > 0 && at[b].n.squaredNorm() > 0) {
                 // Steps within a sheet are cheap, steps from one face of a thin wall to the other dear.
                 const Eigen::Vector3d d = (at[b].p - at[a].p).normalized();
@@ -194,19 +207,19 @@ Surfels make_surfels(const PointGrid& grid, double radius) {
     surfels.at.resize(grid.cells());
     parallel_for(grid.cells(), 256, [&](std::size_t i) { surfels.at[i].p = grid.mean(i); });
     const double touch = kTouch * grid.cell();
-    parallel_for(grid.cells(), 64, [&](std::size_t i) {
-        Surfel& s = surfels.at[i];
-        const Eigen::Vector3d reach = Eigen::Vector3d::Constant(touch);
-        grid.for_cells_in_box(s.p - reach, s.p + reach, [&](std::size_t j) {
-            if (j != i && (surfels.at[j].p - s.p).squaredNorm() <= touch * touch) {
-                s.next.push_back(static_cast<std::uint32_t>(j));
-            }
-        });
-    });
-    parallel_for(grid.cells(), 64, [&](std::size_t i) {
-        collect_neighbours(surfels, static_cast<std::uint32_t>(i));
-        fit_plane(surfels.at[i], surfels.at);
-    });
+    surfels.next = {grid.cells(), [&](std::uint32_t i, std::vector<std::uint32_t>& next) {
+                        const Eigen::Vector3d p = surfels.at[i].p, reach = Eigen::Vector3d::Constant(touch);
+                        grid.for_cells_in_box(p - reach, p + reach, [&](std::size_t j) {
+                            if (j != i && (surfels.at[j].p - p).squaredNorm() <= touch * touch) {
+                                next.push_back(static_cast<std::uint32_t>(j));
+                            }
+                        });
+                    }};
+    surfels.neighbours = {grid.cells(), [&](std::uint32_t i, std::vector<std::uint32_t>& neighbours) {
+                              collect_neighbours(surfels, i, neighbours);
+                          }};
+    parallel_for(grid.cells(), 256,
+                 [&](std::size_t i) { fit_plane(surfels.at[i], surfels.neighbours[i], surfels.at); });
     return surfels;
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "stages/geometry/grid.hpp"
+#include "stages/geometry/parallel.hpp"
 #include "stages/geometry/scale.hpp"
 #include "stages/types.hpp"
 
@@ -13,18 +17,46 @@ namespace seampath::detail {
 
 /// The scan, thinned to one element a cell: what coarse work looks at.
 struct Surfel {
-    Eigen::Vector3d p;                      ///< mean of the cell's points, relative to the scan's origin, mm
-    Eigen::Vector3d n{0, 0, 0};             ///< unit, out of the material; zero where too few neighbours
-    std::uint32_t piece = 0;                ///< of the scan that hangs together, by its first surfel
-    bool decided = true;                    ///< something told which side of its piece is the air
-    double flatness = 0;                    ///< rms distance of the neighbours from their plane, mm
-    std::vector<std::uint32_t> next;        ///< surfels that touch it, ascending
-    std::vector<std::uint32_t> neighbours;  ///< surfels within the radius that hang together with it; itself first
+    Eigen::Vector3d p;           ///< mean of the cell's points, relative to the scan's origin, mm
+    Eigen::Vector3d n{0, 0, 0};  ///< unit, out of the material; zero where too few neighbours
+    std::uint32_t piece = 0;     ///< of the scan that hangs together, by its first surfel
+    bool decided = true;         ///< something told which side of its piece is the air
+    double flatness = 0;         ///< rms distance of the neighbours from their plane, mm
+};
+
+/// A list of surfels for each surfel. Lists of neighbouring surfels share their memory, which is half of what a list
+/// of its own would take for each.
+class SurfelLists {
+public:
+    SurfelLists() = default;
+    /// `append(i, items)` adds surfel i's list to the end of `items`; it is called in parallel.
+    template <class Append>
+    SurfelLists(std::size_t count, Append&& append) : blocks_((count + kBlock - 1) / kBlock), end_(count) {
+        parallel_for(blocks_.size(), 1, [&](std::size_t b) {
+            std::vector<std::uint32_t>& items = blocks_[b];
+            for (std::size_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i) {
+                append(static_cast<std::uint32_t>(i), items);
+                end_[i] = static_cast<std::uint32_t>(items.size());
+            }
+            items.shrink_to_fit();
+        });
+    }
+    std::span<const std::uint32_t> operator[](std::size_t i) const {
+        const std::uint32_t* const items = blocks_[i / kBlock].data();
+        return {items + (i % kBlock == 0 ? 0 : end_[i - 1]), items + end_[i]};
+    }
+
+private:
+    static constexpr std::size_t kBlock = 256;
+    std::vector<std::vector<std::uint32_t>> blocks_;
+    std::vector<std::uint32_t> end_;  ///< of each list, within its block
 };
 
 struct Surfels {
     double radius = 0;  ///< of the neighbourhoods, mm
     std::vector<Surfel> at;
+    SurfelLists next;                ///< surfels that touch each one, ascending
+    SurfelLists neighbours;          ///< those within the radius that hang together with each one; itself first
     std::string orientation_reason;  ///< one sentence: how the side of the air was found
 };
 

@@ -9,11 +9,10 @@ namespace {
 
 constexpr double kShrink = 0.7;
 constexpr double kGrow = 1.5;
-constexpr double kContinuation = 0.15;  // slope by which a surface may leave the continuation of its inner part
-constexpr double kMostTaken = 0.85;     // share of a window's points that a fit must explain to be taken at once
-constexpr double kRough = 1.6;          // residual scale, in noises, beyond which no one surface is what was fitted
-constexpr double kPointsAcross = 12;    // of the smallest window, in point distances
-constexpr double kNoiseWidths = 15;     // of the smallest window, in noises: its slope is then known to a few degrees
+constexpr double kMostTaken = 0.85;   // share of a window's points that a fit must explain to be taken at once
+constexpr double kRough = 1.6;        // residual scale, in noises, beyond which no one surface is what was fitted
+constexpr double kPointsAcross = 12;  // of the smallest window, in point distances
+constexpr double kNoiseWidths = 15;   // of the smallest window, in noises: its slope is then known to a few degrees
 constexpr double kBandWidths = 4;
 constexpr double kLeastNoise = 0.02;  // what counts as noise where a scan has none, in point distances
 constexpr int kBins = 5;
@@ -328,18 +327,6 @@ void thin_out(FlankPoints& samples) {
 
 double noise_of(const ScanScale& scale) {
     return std::max(scale.noise, kLeastNoise * scale.spacing);
-}
-
-double residual(const Flank& flank, double u, double s, double z) {
-    return flank.fit.residual(u / flank.window.away, s / flank.window.along, z);
-}
-
-double continuation_doubt(const Flank& flank, double u, double s) {
-    return kContinuation * std::max({0.0, u - flank.window.away, std::abs(s) - flank.window.along});
-}
-
-double gate(const Flank& flank, double u, double s) {
-    return 4 * flank.noise + continuation_doubt(flank, u, s);
 }
 
 std::optional<Flank> fit_flank(const FlankPoints& samples, const ScanScale& scale, SectionWindow limit) {

@@ -62,13 +62,20 @@ void thin_out(FlankPoints& samples);
 double noise_of(const ScanScale& scale);
 
 /// What is left of a sample's z when the flank's surface is taken off, mm.
-double residual(const Flank& flank, double u, double s, double z);
+inline double residual(const Flank& flank, double u, double s, double z) {
+    return flank.fit.residual(u / flank.window.away, s / flank.window.along, z);
+}
 
 /// How far the truth may lie off the flank's surface where it is carried on to (u, s), beyond its window; mm.
-double continuation_doubt(const Flank& flank, double u, double s);
+inline double continuation_doubt(const Flank& flank, double u, double s) {
+    constexpr double kContinuation = 0.15;  // slope by which a surface may leave the continuation of its inner part
+    return kContinuation * std::max({0.0, u - flank.window.away, std::abs(s) - flank.window.along});
+}
 
 /// Samples further off the surface than this belong to something else, a step, an edge, another wall; mm.
-double gate(const Flank& flank, double u, double s);
+inline double gate(const Flank& flank, double u, double s) {
+    return 4 * flank.noise + continuation_doubt(flank, u, s);
+}
 
 /// The flank in the largest window within the limit in which one surface explains what it holds; mostly that is the
 /// limit. Empty when too few samples lie there.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,9 +43,8 @@ public:
         for (std::int64_t z = a[2]; z <= b[2]; ++z) {
             for (std::int64_t y = a[1]; y <= b[1] && a[0] <= b[0]; ++y) {
                 const std::uint64_t last = key(b[0], y, z);
-                auto it = std::lower_bound(key_.begin(), key_.end(), key(a[0], y, z));
-                for (; it != key_.end() && *it <= last; ++it) {
-                    f(static_cast<std::size_t>(it - key_.begin()));
+                for (std::size_t i = first_from(key(a[0], y, z)); i < key_.size() && key_[i] <= last; ++i) {
+                    f(i);
                 }
             }
         }
@@ -71,14 +71,34 @@ private:
     std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) const {
         return static_cast<std::uint64_t>((z * count_[1] + y) * count_[0] + x);
     }
+    std::uint64_t key_of(const Eigen::Vector3f& p) const {
+        const auto at = [&](int axis) {
+            return std::min(static_cast<std::int64_t>((p[axis] - low_[axis]) / cell_), count_[axis] - 1);
+        };
+        return key(at(0), at(1), at(2));
+    }
+    /// The first cell whose key is not below the given one.
+    std::size_t first_from(std::uint64_t key) const {
+        const std::uint64_t b = key >> bucket_shift_;
+        const auto begin = key_.begin() + bucket_[b], end = key_.begin() + bucket_[b + 1];
+        return static_cast<std::size_t>(std::lower_bound(begin, end, key) - key_.begin());
+    }
+
+    using Cells = std::vector<std::pair<std::uint64_t, std::uint32_t>>;  ///< ascending: key, and the first point
+    std::size_t set_bounds(std::span<const Eigen::Vector3f> points, std::span<const std::uint8_t> keep);
+    std::vector<std::uint32_t> sort_into_buckets(std::span<const Eigen::Vector3f> points,
+                                                 std::span<const std::uint8_t> keep);
+    void sort_bucket(std::span<const Eigen::Vector3f> points, std::size_t begin, std::size_t end, Cells& cells);
 
     double cell_;
     Eigen::Vector3d low_;
     Eigen::Matrix<std::int64_t, 3, 1> count_;
     std::vector<Eigen::Vector3f> sorted_;
     std::vector<std::uint32_t> source_;
-    std::vector<std::uint64_t> key_;  ///< of each occupied cell, ascending
-    std::vector<std::size_t> start_;  ///< first point of each cell, and the end
+    std::vector<std::uint64_t> key_;     ///< of each occupied cell, ascending
+    std::vector<std::uint32_t> start_;   ///< first point of each cell, and the end
+    int bucket_shift_ = 0;               ///< keys that are alike but for so many bits share a bucket
+    std::vector<std::uint32_t> bucket_;  ///< first cell of each bucket, and the end
 };
 
 }  // namespace seampath

@@ -42,4 +42,11 @@ void parallel_for(std::size_t n, std::size_t block, F&& f) {
     }
 }
 
+/// Calls f(c, begin, end) for each of `chunks` equal runs of [0, n), on all processors. Sums over a run do not hang on
+/// the number of threads.
+template <class F>
+void parallel_chunks(std::size_t n, std::size_t chunks, F&& f) {
+    parallel_for(chunks, 1, [&](std::size_t c) { f(c, c * n / chunks, (c + 1) * n / chunks); });
+}
+
 }  // namespace seampath

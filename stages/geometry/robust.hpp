@@ -11,14 +11,7 @@
 namespace seampath {
 
 /// The q-quantile (0..1) of the values, by rank; reorders them. 0 for none.
-inline double quantile(std::vector<double>& values, double q) {
-    if (values.empty()) {
-        return 0;
-    }
-    const auto k = static_cast<std::ptrdiff_t>(std::lround(q * static_cast<double>(values.size() - 1)));
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return values[static_cast<std::size_t>(k)];
-}
+double quantile(std::vector<double>& values, double q);
 
 /// Robust fit of z = c0 + c1 u + c2 s + c3 u^2 + c4 u s + c5 s^2 by iteratively re-weighted least squares with Tukey's
 /// biweight (c = 4.685, 95 % efficient for Gaussian noise) and the scale from the median absolute residual.
@@ -69,20 +62,23 @@ public:
     }
     double value(double u, double s) const { return row(u, s).dot(c_); }  ///< of the quadratic
     /// What is left of a point's height when the surface is taken off.
-    double residual(double u, double s, double z) const { return straightened(u, s, z) - value(u, s); }
+    double residual(double u, double s, double z) const {
+        return straightened(u, s, z) - (c_[0] + c_[1] * u + c_[2] * s + c_[3] * u * u + c_[4] * u * s + c_[5] * s * s);
+    }
     /// Inverse of the weighted normal matrix: times scale^2 it is the covariance for uncorrelated noise.
     Normal cofactors() const { return normal_.ldlt().solve(Normal::Identity()); }
 
 private:
     bool least_squares();
     void take_curvature();
+    void measure_residuals();
     // The tilted frame adds terms in h u and h s: in three dimensions n.v = v^T M v / 2 with M n = k n.
     double straightened(double u, double s, double z) const {
         const double h = z - middle_;
         return z - h * (0.5 * bulge_ * h + tilt_u_ * u + tilt_s_ * s);
     }
 
-    std::vector<double> u_, s_, z_, straight_, weight_, residual_;
+    std::vector<double> u_, s_, z_, straight_, weight_, residual_, magnitude_;
     Coefficients c_ = Coefficients::Zero();
     Normal normal_;
     double u_length_ = 0, s_length_ = 0;

@@ -23,30 +23,57 @@ struct Bulk {
     double extent = 0;  // mm, of the longest axis, without what lies four standard deviations off
 };
 
+struct Box {
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(-std::numeric_limits<double>::max()), high = -low;
+    bool holds(const Eigen::Vector3d& x) const {
+        return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+    }
+};
+
+struct Moments {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+    double count = 0;
+};
+
+// Of the points in the box, about `middle`.
+Moments moments_of(std::span<const Eigen::Vector3f> points, const Box& box, const Eigen::Vector3d& middle) {
+    std::array<Moments, 16> chunk;
+    parallel_chunks(points.size(), chunk.size(), [&](std::size_t c, std::size_t begin, std::size_t end) {
+        Moments m;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Vector3d x = points[i].cast<double>();
+            if (box.holds(x)) {
+                const Eigen::Vector3d d = x - middle;
+                m.sum += d;
+                m.squares += d.cwiseProduct(d);
+                m.count += 1;
+            }
+        }
+        chunk[c] = m;
+    });
+    Moments all;
+    for (const Moments& m : chunk) {
+        all.sum += m.sum;
+        all.squares += m.squares;
+        all.count += m.count;
+    }
+    return all;
+}
+
 Bulk bulk_of(std::span<const Eigen::Vector3f> points) {
     constexpr int kRounds = 12;
     constexpr double kClip = 4;  // standard deviations
     Bulk bulk;
-    Eigen::Vector3d low = Eigen::Vector3d::Constant(-std::numeric_limits<double>::max()), high = -low;
+    Box box;
     for (int round = 0; round < kRounds; ++round) {
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
-        double count = 0;
-        for (const Eigen::Vector3f& p : points) {
-            const Eigen::Vector3d x = p.cast<double>();
-            if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) {
-                const Eigen::Vector3d d = x - bulk.middle;
-                sum += d;
-                squares += d.cwiseProduct(d);
-                count += 1;
-            }
-        }
-        const Eigen::Vector3d mean = sum / count,
-                              deviation = (squares / count - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
+        const Moments m = moments_of(points, box, bulk.middle);
+        const Eigen::Vector3d mean = m.sum / m.count,
+                              deviation = (m.squares / m.count - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
         bulk.middle += mean;
         const double before = bulk.extent;
         bulk.extent = std::sqrt(12.0) * deviation.maxCoeff();  // of points spread evenly
-        low = bulk.middle - Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
-        high = bulk.middle + Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
+        box.low = bulk.middle - Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
+        box.high = bulk.middle + Eigen::Vector3d::Constant(kClip * deviation.maxCoeff());
         if (round > 0 && std::abs(before - bulk.extent) <= 1e-3 * bulk.extent) {
             break;
         }
@@ -112,10 +139,32 @@ double block_correlation(const QuadraticFit& fit) {
     return independent > 0 ? found / independent : 0;
 }
 
-Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) {
+// The points of the ball, relative to its centre; some more than `most` when there are more.
+std::vector<Eigen::Vector3d> points_in_ball(const PointGrid& grid, const Eigen::Vector3d& p, double radius,
+                                            std::size_t most) {
     std::vector<Eigen::Vector3d> q;
-    grid.for_points_in_ball(p, radius, [&](const Eigen::Vector3f& x, double) { q.push_back(x.cast<double>() - p); });
-    if (q.size() < 20) {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
+    grid.for_cells_in_box(p - reach, p + reach, [&](std::size_t cell) {
+        if (q.size() <= most) {
+            for (const Eigen::Vector3f& x : grid.points(cell)) {
+                const Eigen::Vector3d d = x.cast<double>() - p;
+                if (d.squaredNorm() <= radius * radius) {
+                    q.push_back(d);
+                }
+            }
+        }
+    });
+    return q;
+}
+
+// Over a ball of `width` point distances. A place that lies off the surfaces is as far from its neighbours as from much
+// else, and tells nothing.
+Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double spacing, double width) {
+    constexpr double kMost = 8;  // of the points that one surface has there; three meet in a corner
+    const double radius = width * spacing;
+    const auto most = static_cast<std::size_t>(kMost * std::numbers::pi * width * width);
+    const std::vector<Eigen::Vector3d> q = points_in_ball(grid, p, radius, most);
+    if (q.size() < 20 || q.size() > most) {
         return {};
     }
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -141,17 +190,10 @@ Patch fit_patch(const PointGrid& grid, const Eigen::Vector3d& p, double radius) 
 }
 
 std::vector<Patch> fit_patches(const PointGrid& grid, const std::vector<Eigen::Vector3d>& places,
-                               const std::vector<double>& radius) {
+                               const std::vector<double>& spacing, double width) {
     std::vector<Patch> patches(places.size());
-    parallel_for(places.size(), 16, [&](std::size_t k) { patches[k] = fit_patch(grid, places[k], radius[k]); });
+    parallel_for(places.size(), 4, [&](std::size_t k) { patches[k] = fit_patch(grid, places[k], spacing[k], width); });
     return patches;
-}
-
-std::vector<double> times(double factor, std::vector<double> values) {
-    for (double& x : values) {
-        x *= factor;
-    }
-    return values;
 }
 
 // Of the patches' residual scales, each divided by its unit. Places on edges are rough for another reason: look below
@@ -220,12 +262,10 @@ std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points
     constexpr double kFar = 100;
     const Bulk bulk = bulk_of(points);
     std::vector<std::uint8_t> keep(points.size());
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    parallel_for(points.size(), 1 << 16, [&](std::size_t i) {
         keep[i] = (points[i].cast<double>() - bulk.middle).cwiseAbs().maxCoeff() <= kFar * bulk.extent;
-        kept += keep[i];
-    }
-    return kept == points.size() ? std::vector<std::uint8_t>{} : keep;
+    });
+    return std::find(keep.begin(), keep.end(), 0) == keep.end() ? std::vector<std::uint8_t>{} : keep;
 }
 
 ScanScale ScaleField::at(const Eigen::Vector3d& p) const {
@@ -271,7 +311,7 @@ ScaleField estimate_scale(std::span<const Eigen::Vector3f> points) {
     double widths = 6, ratio = 0;
     std::vector<Patch> patches;
     for (int round = 0; round < 4; ++round) {
-        patches = fit_patches(grid, places, times(widths, spacing));
+        patches = fit_patches(grid, places, spacing, widths);
         ratio = typical_scale(patches, spacing);
         if (6 * ratio <= widths) {
             break;
@@ -281,12 +321,12 @@ ScaleField estimate_scale(std::span<const Eigen::Vector3f> points) {
     const std::vector<double> one(places.size(), 1);
     const double small_ball_noise = overall.noise = typical_scale(patches, one);
     std::vector<Eigen::Vector3d> fewer;
-    std::vector<double> wide_radius;
+    std::vector<double> fewer_spacing;
     for (std::size_t k = 0; k < places.size(); k += 2) {
         fewer.push_back(places[k]);
-        wide_radius.push_back(4.5 * widths * spacing[k]);
+        fewer_spacing.push_back(spacing[k]);
     }
-    refine_by_wide_balls(overall, fit_patches(grid, fewer, wide_radius));
+    refine_by_wide_balls(overall, fit_patches(grid, fewer, fewer_spacing, 4.5 * widths));
     field.local = smoothed(field, spacing, patches, small_ball_noise > 0 ? overall.noise / small_ball_noise : 1);
     return field;
 }

@@ -1,5 +1,7 @@
 #include "stages/geometry/grid.hpp"
 
+#include <algorithm>
+#include <array>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -76,6 +78,39 @@ TEST(PointGrid, CellsFollowSpaceWhateverTheOrderOfThePoints) {
         EXPECT_EQ(a.points(c).size(), b.points(c).size());
         EXPECT_LT((a.mean(c) - b.mean(c)).norm(), 1e-12);
     }
+}
+
+// Enough points for chunks, buckets and several digits of a key; two clusters leave most buckets empty.
+TEST(PointGrid, ManyPointsAreSortedAsByTheStandardLibrary) {
+    auto points = random_points(150000, 20);
+    for (std::size_t i = 0; i < points.size(); i += 2) {
+        points[i] += Eigen::Vector3f(500, 700, 900);
+    }
+    constexpr double kCell = 0.7;
+    const PointGrid grid(points, kCell);
+    Eigen::Vector3f low = points.front();
+    for (const auto& p : points) {
+        low = low.cwiseMin(p);
+    }
+    std::vector<std::array<std::int64_t, 4>> expected;  // z, y, x of the cell, index
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector3d at = (points[i].cast<double>() - low.cast<double>()) / kCell;
+        expected.push_back({static_cast<std::int64_t>(at.z()), static_cast<std::int64_t>(at.y()),
+                            static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(i)});
+    }
+    std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(grid.size(), points.size());
+    std::size_t cell = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        ASSERT_EQ(grid.source(k), expected[k][3]) << k;
+        ASSERT_EQ(grid.all()[k], points[grid.source(k)]);
+        const bool begins =
+            k == 0 || !std::equal(expected[k].begin(), expected[k].begin() + 3, expected[k - 1].begin());
+        if (begins) {
+            ASSERT_EQ(grid.first_point(cell++), k);
+        }
+    }
+    EXPECT_EQ(grid.cells(), cell);
 }
 
 TEST(PointGrid, BoxOfCellsHoldsThePointsOfTheBox) {

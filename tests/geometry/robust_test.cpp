@@ -153,5 +153,27 @@ TEST(Quantile, IsByRank) {
     EXPECT_EQ(quantile(values, 1), 5);
 }
 
+// What a sample brackets, and what it does not: values that repeat, values in order, a few that dwarf the rest.
+TEST(Quantile, OfManyValuesIsTheOneThatSortingFinds) {
+    const Random random(12, 0);
+    std::vector<std::vector<double>> sets(4, std::vector<double>(20000));
+    for (std::size_t i = 0; i < 20000; ++i) {
+        sets[0][i] = random.normal(i);
+        sets[1][i] = std::floor(3 * random.uniform(i));
+        sets[2][i] = static_cast<double>(i);
+        sets[3][i] = i % 79 == 0 ? random.uniform(i) * 1e9 : 0;  // those that the sample takes stand apart
+    }
+    for (const std::vector<double>& values : sets) {
+        std::vector<double> sorted = values;
+        std::sort(sorted.begin(), sorted.end());
+        for (const double q : {0.0, 1e-4, 0.1, 0.5, 0.997, 0.9999, 1.0}) {
+            std::vector<double> reordered = values;
+            EXPECT_EQ(quantile(reordered, q), sorted[static_cast<std::size_t>(std::lround(q * 19999))]) << q;
+            std::sort(reordered.begin(), reordered.end());
+            EXPECT_EQ(reordered, sorted) << "the values are no longer the same";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace seampath
