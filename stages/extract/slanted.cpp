@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -20,10 +21,14 @@ using Points = std::vector<Vector3d>;
 
 constexpr double kSparse = 2, kTooSparse = 5;  // point distance, in those of the scan
 constexpr std::size_t kLeastPoints = 30;       // of a face
-constexpr int kTrials = 400;         // a quarter of the points on the face: failure chance (1 - 1/64)^400 = 0.2 %
-constexpr double kBeside = 4;        // point distances within which a face must reach the seam
-constexpr double kOneSide = 0.9;     // of a face's points, on the air side of the other
-constexpr double kLeastLength = 10;  // of a seam, in point distances of the scan
+constexpr std::size_t kMostPoints = 6000;      // of a face or beside it: more only take time
+constexpr int kTrials = 400;             // a quarter of the points on the face: failure chance (1 - 1/64)^400 = 0.2 %
+constexpr std::size_t kMostGrowth = 20;  // of a face's points, by those near well-seen surfaces
+constexpr double kOnePlane = 0.8;        // of the points of a sparse surface, on the face's plane
+constexpr double kLeastHeight = 10;      // of a face over the seam, in its point distances
+constexpr double kBeside = 4;            // point distances within which a face must reach the seam
+constexpr double kOneSide = 0.9;         // of a face's points, on the air side of the other
+constexpr double kLeastLength = 10;      // of a seam, in point distances of the scan
 
 struct Face {
     SurfaceFit plane;
@@ -75,11 +80,19 @@ bool before(const Vector3d& a, const Vector3d& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
+// At most kMostPoints of them, by lot.
 Points points_of(const PointGrid& grid, const std::vector<std::uint32_t>& cells) {
     Points points;
+    std::size_t all = 0;
+    for (const std::uint32_t cell : cells) {
+        all += grid.points(cell).size();
+    }
+    const double share = std::min(1.0, static_cast<double>(kMostPoints) / static_cast<double>(all));
     for (const std::uint32_t cell : cells) {
         for (const Eigen::Vector3f& p : grid.points(cell)) {
-            points.push_back(p.cast<double>());
+            if (lot_of(p) <= share * 4294967295.0) {
+                points.push_back(p.cast<double>());
+            }
         }
     }
     // Whatever the order of the scan's points.
@@ -129,10 +142,11 @@ std::optional<Face> face_of(Points points, const Vector3d& outward, double least
         return std::nullopt;
     }
     std::vector<double> nearest;
-    for (const Vector3d& p : points) {
-        double d = 1e300;
+    const std::size_t stride = 1 + points.size() / 1000;
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+        double d = std::numeric_limits<double>::infinity();
         for (const Vector3d& q : points) {
-            const double d2 = (p - q).squaredNorm();
+            const double d2 = (points[i] - q).squaredNorm();
             d = d2 > 0 ? std::min(d, d2) : d;
         }
         nearest.push_back(2 * std::sqrt(d));  // of random points; Clark & Evans 1954
@@ -147,7 +161,8 @@ std::optional<Face> grown(const PointGrid& grid, const Face& face, double least_
     const Vector3d half = Vector3d::Constant(reach);
     std::set<std::size_t> taken;
     Points points = face.points;
-    for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::size_t most = std::min(kMostPoints, kMostGrowth * points.size());
+    for (std::size_t k = 0; k < points.size() && points.size() < most; ++k) {
         const Vector3d from = points[k];
         grid.for_cells_in_box(from - half, from + half, [&](std::size_t cell) {
             for (std::size_t i = 0; i < grid.points(cell).size(); ++i) {
@@ -159,26 +174,32 @@ std::optional<Face> grown(const PointGrid& grid, const Face& face, double least_
             }
         });
     }
+    if (points.size() >= most) {
+        return std::nullopt;  // strays before a well-seen plane, no face of their own
+    }
     points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(face.points.size()));
     std::sort(points.begin(), points.end(), before);
-    return face_of(std::move(points), std::get<Plane>(face.plane.shape()).normal, least_scale);
+    auto whole = face_of(std::move(points), std::get<Plane>(face.plane.shape()).normal, least_scale);
+    if (whole) {
+        whole->spacing = face.spacing;  // points of other surfaces that lie on the plane are nearer to each other
+    }
+    return whole;
 }
 
 std::vector<Face> sparse_faces(const Around& around) {
     const ScanScale& scale = around.field.overall;
     std::vector<Face> faces;
     for (const auto& group : sparse_groups(around)) {
-        Points points = points_of(around.grid, group);
-        while (points.size() >= kLeastPoints) {
-            Points plane = take_plane(points, 2 * scale.noise);
-            if (plane.size() < kLeastPoints) {
-                break;
-            }
-            auto face = face_of(std::move(plane), Vector3d::UnitX(), 0.1 * scale.noise);
-            if (face && face->spacing < kTooSparse * scale.spacing && face->plane.scale() < 1.2 * scale.noise) {
-                if (auto whole = grown(around.grid, *face, 0.1 * scale.noise)) {
-                    faces.push_back(std::move(*whole));
-                }
+        Points rest = points_of(around.grid, group);
+        const auto all = static_cast<double>(rest.size());
+        Points plane = take_plane(rest, 2 * scale.noise);
+        if (static_cast<double>(plane.size()) < kOnePlane * all) {
+            continue;  // the wall of a hole, strays
+        }
+        const auto face = face_of(std::move(plane), Vector3d::UnitX(), 0.1 * scale.noise);
+        if (face && face->spacing < kTooSparse * scale.spacing && face->plane.scale() < 1.2 * scale.noise) {
+            if (auto whole = grown(around.grid, *face, 0.1 * scale.noise)) {
+                faces.push_back(std::move(*whole));
             }
         }
     }
@@ -188,7 +209,7 @@ std::vector<Face> sparse_faces(const Around& around) {
 // Well-seen planes beside a sparse face.
 std::vector<Face> faces_beside(const Around& around, const Face& sparse) {
     constexpr std::size_t kMost = 4;
-    const ScanScale& scale = around.field.overall;
+    const double noise = around.field.at(sparse.plane.origin()).noise;
     const Vector3d reach = Vector3d::Constant(kBeside * sparse.spacing);
     std::vector<std::uint32_t> near;
     for (const Vector3d& p : sparse.points) {
@@ -199,12 +220,12 @@ std::vector<Face> faces_beside(const Around& around, const Face& sparse) {
     near.erase(std::unique(near.begin(), near.end()), near.end());
     Points points = points_of(around.grid, near);
     std::erase_if(points, [&](const Vector3d& p) {
-        return std::abs(sparse.plane.distance(p)) < 4 * std::max(0.1 * scale.noise, sparse.plane.scale());
+        return std::abs(sparse.plane.distance(p)) < 4 * std::max(0.1 * noise, sparse.plane.scale());
     });
     std::vector<Face> faces;
     while (faces.size() < kMost) {
-        auto face = face_of(take_plane(points, 2 * scale.noise), Vector3d::UnitX(), 0.1 * scale.noise);
-        if (!face || face->spacing > kSparse * scale.spacing) {
+        auto face = face_of(take_plane(points, 3 * noise), Vector3d::UnitX(), 0.1 * noise);
+        if (!face) {
             break;
         }
         faces.push_back(std::move(*face));
@@ -265,6 +286,13 @@ std::optional<Seam> fillet_of(const Around& around, const Face& sparse, const Fa
         Vector3d(n1.dot(sparse.plane.origin()), n2.dot(beside.plane.origin()), t.dot(sparse.plane.origin())));
     const auto [a1, b1] = stretch_beside(sparse, p, t);
     const auto [a2, b2] = stretch_beside(beside, p, t);
+    std::vector<double> height;
+    for (const Vector3d& q : sparse.points) {
+        height.push_back(n2.dot(q - p));
+    }
+    if (quantile(height, 0.9) < kLeastHeight * sparse.spacing) {
+        return std::nullopt;
+    }
     const double from = std::max(a1, a2), to = std::min(b1, b2), length = to - from;
     if (length < (min_length > 0 ? min_length : kLeastLength * around.field.overall.spacing)) {
         return std::nullopt;
