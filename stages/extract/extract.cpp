@@ -12,6 +12,7 @@
 #include "stages/extract/folds.hpp"
 #include "stages/extract/slanted.hpp"
 #include "stages/extract/surfels.hpp"
+#include "stages/geometry/bulk.hpp"
 #include "stages/geometry/views.hpp"
 
 namespace seampath {

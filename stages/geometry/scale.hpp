@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,10 +13,6 @@ struct ScanScale {
     double noise = 0;        ///< mm; robust 1-sigma of points about locally fitted quadrics
     double correlation = 1;  ///< variance of means of neighbouring points over that of as many independent ones, >= 1
 };
-
-/// Flags of the points that lie within a hundred extents of the bulk of the scan; empty when all do. A single return
-/// from the end of the world must not set the size of a grid's cells.
-std::vector<std::uint8_t> without_strays(std::span<const Eigen::Vector3f> points);
 
 /// The scale of a scan as a whole and place by place: a depth camera's points lie twice as far apart and are four times
 /// as noisy at twice the distance, and a surface seen at a slant is sparser than one seen square.
