@@ -86,6 +86,15 @@ Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
     Seam seam;
     seam.kind = fold.convex ? JointKind::corner : JointKind::fillet;
     seam.closed = fold.closed;
+    if (!fold.convex) {  // those of a corner have their material on the wrong side
+        seam.surfaces = fold.surfaces;
+    }
+    for (auto* surface : {&seam.surfaces.first, &seam.surfaces.second}) {
+        if (*surface) {
+            (*surface)->point += origin;
+            (*surface)->origin += origin;
+        }
+    }
     const double outwards = fold.convex ? -1 : 1;
     std::vector<double> bends;
     for (const TrackPoint& point : fold.way) {
@@ -134,7 +143,7 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
     const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1),
                  registration = result.registration_mm * (1 + 0.6 / freedom);
     for (Fold& fold : folds) {
-        settle_on_whole_flanks(measuring, registration, fold.way);
+        fold.surfaces = settle_on_whole_flanks(measuring, registration, fold.way);
         result.seams.push_back(seam_of(fold, around.scan.origin_mm));
     }
     return result;

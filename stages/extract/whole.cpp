@@ -9,8 +9,8 @@
 
 #include "stages/extract/pool.hpp"
 #include "stages/extract/registration.hpp"
+#include "stages/geometry/flank_surface.hpp"
 #include "stages/geometry/robust.hpp"
-#include "stages/geometry/surface_fit.hpp"
 
 namespace seampath::detail {
 namespace {
@@ -190,30 +190,65 @@ bool contradicted(const std::vector<TrackPoint>& way, int k, const WholeFlank& w
     return quantile(squares, 0.5) > kMost * kMost * kMedianSquare;
 }
 
-std::optional<WholeFlank> whole_flank(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) {
+/// The surface nearest to all of a flank's points, and the flank as that surface where it explains them.
+struct FlankFit {
+    std::optional<ShiftOfSurface> surface;
+    std::optional<WholeFlank> whole;
+};
+
+FlankFit fit_flank(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) {
+    FlankFit best;
     const Pool pool = pool_of(tracker, way, k);
     if (pool.points.size() < 100) {
-        return std::nullopt;
+        return best;
     }
     const double least = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
-    std::optional<WholeFlank> best;
+    std::optional<SurfaceFit> nearest;
     for (const auto& surface : {fit_plane(pool.points, pool.block, pool.normals.front(), least),
                                 fit_cylinder(pool.points, pool.block, pool.places, pool.normals, least)}) {
-        if (!surface || surface->share_taken() < kLeastTaken || surface->scale() > kMostScale * pool.scale) {
+        if (!surface) {
+            continue;
+        }
+        if (!best.whole && (!nearest || surface->scale() < nearest->scale())) {
+            nearest = surface;
+        }
+        if (surface->share_taken() < kLeastTaken || surface->scale() > kMostScale * pool.scale) {
             continue;
         }
         WholeFlank whole = shrunk(way, k, pool, *surface);
-        if ((!best || whole.variance < best->variance) && !contradicted(way, k, whole)) {
-            best = std::move(whole);
+        if ((!best.whole || whole.variance < best.whole->variance) && !contradicted(way, k, whole)) {
+            nearest = surface;
+            best.whole = std::move(whole);
         }
     }
-    if (best) {
-        const ShiftOfSurface shift(best->surface, pool);
+    if (nearest) {
+        best.surface.emplace(*nearest, pool);
+    }
+    if (best.whole) {
         for (const TrackPoint& place : way) {
-            best->shift.push_back(shift.at(place.section.p));
+            best.whole->shift.push_back(best.surface->at(place.section.p));
         }
     }
     return best;
+}
+
+// With what the views' shifts do beside the noise that the fits know of.
+SeamSurfaces surfaces_of(const std::array<FlankFit, 2>& fits, double registration) {
+    const double shifts = registration * registration;
+    const auto one = [&](const FlankFit& fit) -> std::optional<FlankSurface> {
+        if (!fit.surface) {
+            return std::nullopt;
+        }
+        const SurfaceFit& surface = fit.surface->surface();
+        auto plain = flank_surface(surface, surface.covariance() + shifts * fit.surface->covariance_with(*fit.surface));
+        plain.explains = fit.whole.has_value();
+        return plain;
+    };
+    SeamSurfaces surfaces{one(fits[0]), one(fits[1]), {}};
+    if (surfaces.first && surfaces.second) {
+        surfaces.covariance_between = rows_of(shifts * fits[0].surface->covariance_with(*fits[1].surface));
+    }
+    return surfaces;
 }
 
 // Moves the place, within its section plane, to where both flanks meet.
@@ -254,8 +289,9 @@ double variance_across(const TrackPoint& place, std::size_t i, int k, const std:
 
 }  // namespace
 
-void settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
-    const std::array<std::optional<WholeFlank>, 2> whole{whole_flank(tracker, way, 0), whole_flank(tracker, way, 1)};
+SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
+    const std::array<FlankFit, 2> fits{fit_flank(tracker, way, 0), fit_flank(tracker, way, 1)};
+    const std::array<std::optional<WholeFlank>, 2> whole{fits[0].whole, fits[1].whole};
     const std::vector<double> shift[2] = {shift_of_windows(tracker, way, 0), shift_of_windows(tracker, way, 1)};
     for (std::size_t i = 0; i < way.size(); ++i) {
         if (way[i].modelled && !(whole[0] && whole[1])) {
@@ -268,6 +304,7 @@ void settle_on_whole_flanks(const Tracker& tracker, double registration, std::ve
         }
         way[i].sigma = std::sqrt(variance) / std::max(1e-6, std::sin(way[i].bend));
     }
+    return surfaces_of(fits, registration);
 }
 
 }  // namespace seampath::detail

@@ -7,7 +7,7 @@
 
 #include "stages/error.hpp"
 #include "stages/fit/node_table.hpp"
-#include "stages/fit/pieces.hpp"
+#include "stages/geometry/pieces.hpp"
 #include "stages/geometry/polynomial.hpp"
 
 namespace seampath {
