@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include <Eigen/Cholesky>
@@ -77,42 +78,29 @@ std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<T
     return variance;
 }
 
-// A shift b of a view changes the distances of its points by n.b, n out of the shape: the normal equations with that on
-// their right side.
+// A shift b of a view changes the distances of its points by -n.b: the normal equations with that on their right side.
 ShiftOfSurface::ShiftOfSurface(const SurfaceFit& surface, const Pool& pool) : surface_(surface) {
     const int n = surface.parameters();
-    const double side = surface.bore() ? -1 : 1;
     SurfaceFit::Matrix normal = SurfaceFit::Matrix::Zero(n, n);
     std::map<std::uint32_t, Influence> sums;
     for (std::size_t i = 0; i < pool.points.size(); ++i) {
         const SurfaceFit::Vector row = surface.weight(pool.points[i]) * surface.row(pool.points[i]);
         normal += row * surface.row(pool.points[i]).transpose();
         const auto [sum, fresh] = sums.try_emplace(pool.view[i], Influence::Zero(n, 3));
-        sum->second += side * row * surface.normal(pool.points[i]).transpose();
+        sum->second += row * surface.normal(pool.points[i]).transpose();
     }
     const Eigen::LDLT<SurfaceFit::Matrix> ldlt(normal);
     for (const auto& [view, sum] : sums) {
-        influence_.emplace(view, ldlt.solve(sum));
+        influence_.push_back(ldlt.solve(sum));
     }
 }
 
 double ShiftOfSurface::at(const Eigen::Vector3d& p) const {
     double variance = 0;
-    for (const auto& [view, influence] : influence_) {
+    for (const Influence& influence : influence_) {
         variance += (surface_.row(p).transpose() * influence).squaredNorm();
     }
     return variance;
-}
-
-Eigen::MatrixXd ShiftOfSurface::covariance_with(const ShiftOfSurface& other) const {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(surface_.parameters(), other.surface_.parameters());
-    for (const auto& [view, influence] : influence_) {
-        const auto theirs = other.influence_.find(view);
-        if (theirs != other.influence_.end()) {
-            sum += influence * theirs->second.transpose();
-        }
-    }
-    return sum;
 }
 
 }  // namespace seampath::detail

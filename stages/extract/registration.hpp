@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <vector>
 
 #include "stages/extract/pool.hpp"
@@ -32,15 +30,12 @@ std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<T
 class ShiftOfSurface {
 public:
     ShiftOfSurface(const SurfaceFit& surface, const Pool& pool);
-    const SurfaceFit& surface() const { return surface_; }
     double at(const Eigen::Vector3d& p) const;
-    /// Covariance of the surface's parameters with those of another (or with themselves), per variance of the shifts.
-    Eigen::MatrixXd covariance_with(const ShiftOfSurface& other) const;
 
 private:
     using Influence = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, SurfaceFit::kMostParameters, 3>;
-    SurfaceFit surface_;
-    std::map<std::uint32_t, Influence> influence_;  ///< of each view's shift on the parameters
+    const SurfaceFit& surface_;
+    std::vector<Influence> influence_;  ///< of each view's shift on the parameters
 };
 
 }  // namespace seampath::detail

@@ -7,10 +7,11 @@
 
 #include <Eigen/Dense>
 
+#include "stages/extract/joint.hpp"
 #include "stages/extract/pool.hpp"
 #include "stages/extract/registration.hpp"
-#include "stages/geometry/flank_surface.hpp"
 #include "stages/geometry/robust.hpp"
+#include "stages/geometry/surface_fit.hpp"
 
 namespace seampath::detail {
 namespace {
@@ -192,63 +193,41 @@ bool contradicted(const std::vector<TrackPoint>& way, int k, const WholeFlank& w
 
 /// The surface nearest to all of a flank's points, and the flank as that surface where it explains them.
 struct FlankFit {
-    std::optional<ShiftOfSurface> surface;
+    Pool pool;
+    std::optional<SurfaceFit> nearest;
     std::optional<WholeFlank> whole;
 };
 
-FlankFit fit_flank(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) {
-    FlankFit best;
-    const Pool pool = pool_of(tracker, way, k);
+FlankFit fit_flank(const Tracker& tracker, const std::vector<TrackPoint>& way, int k, double least_scale) {
+    FlankFit best{pool_of(tracker, way, k), {}, {}};
+    const Pool& pool = best.pool;
     if (pool.points.size() < 100) {
         return best;
     }
-    const double least = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
-    std::optional<SurfaceFit> nearest;
-    for (const auto& surface : {fit_plane(pool.points, pool.block, pool.normals.front(), least),
-                                fit_cylinder(pool.points, pool.block, pool.places, pool.normals, least)}) {
+    for (const auto& surface : {fit_plane(pool.points, pool.block, pool.normals.front(), least_scale),
+                                fit_cylinder(pool.points, pool.block, pool.places, pool.normals, least_scale)}) {
         if (!surface) {
             continue;
         }
-        if (!best.whole && (!nearest || surface->scale() < nearest->scale())) {
-            nearest = surface;
+        if (!best.whole && (!best.nearest || surface->scale() < best.nearest->scale())) {
+            best.nearest = surface;
         }
         if (surface->share_taken() < kLeastTaken || surface->scale() > kMostScale * pool.scale) {
             continue;
         }
         WholeFlank whole = shrunk(way, k, pool, *surface);
         if ((!best.whole || whole.variance < best.whole->variance) && !contradicted(way, k, whole)) {
-            nearest = surface;
+            best.nearest = surface;
             best.whole = std::move(whole);
         }
     }
-    if (nearest) {
-        best.surface.emplace(*nearest, pool);
-    }
     if (best.whole) {
+        const ShiftOfSurface shift(best.whole->surface, pool);
         for (const TrackPoint& place : way) {
-            best.whole->shift.push_back(best.surface->at(place.section.p));
+            best.whole->shift.push_back(shift.at(place.section.p));
         }
     }
     return best;
-}
-
-// With what the views' shifts do beside the noise that the fits know of.
-SeamSurfaces surfaces_of(const std::array<FlankFit, 2>& fits, double registration) {
-    const double shifts = registration * registration;
-    const auto one = [&](const FlankFit& fit) -> std::optional<FlankSurface> {
-        if (!fit.surface) {
-            return std::nullopt;
-        }
-        const SurfaceFit& surface = fit.surface->surface();
-        auto plain = flank_surface(surface, surface.covariance() + shifts * fit.surface->covariance_with(*fit.surface));
-        plain.explains = fit.whole.has_value();
-        return plain;
-    };
-    SeamSurfaces surfaces{one(fits[0]), one(fits[1]), {}};
-    if (surfaces.first && surfaces.second) {
-        surfaces.covariance_between = rows_of(shifts * fits[0].surface->covariance_with(*fits[1].surface));
-    }
-    return surfaces;
 }
 
 // Moves the place, within its section plane, to where both flanks meet.
@@ -290,7 +269,9 @@ double variance_across(const TrackPoint& place, std::size_t i, int k, const std:
 }  // namespace
 
 SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
-    const std::array<FlankFit, 2> fits{fit_flank(tracker, way, 0), fit_flank(tracker, way, 1)};
+    const double least_scale = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
+    const std::array<FlankFit, 2> fits{fit_flank(tracker, way, 0, least_scale),
+                                       fit_flank(tracker, way, 1, least_scale)};
     const std::array<std::optional<WholeFlank>, 2> whole{fits[0].whole, fits[1].whole};
     const std::vector<double> shift[2] = {shift_of_windows(tracker, way, 0), shift_of_windows(tracker, way, 1)};
     for (std::size_t i = 0; i < way.size(); ++i) {
@@ -304,7 +285,10 @@ SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration,
         }
         way[i].sigma = std::sqrt(variance) / std::max(1e-6, std::sin(way[i].bend));
     }
-    return surfaces_of(fits, registration);
+    const auto pooled = [](const FlankFit& fit) {
+        return PooledFlank{&fit.pool, fit.nearest ? &*fit.nearest : nullptr, fit.whole.has_value()};
+    };
+    return joint_surfaces({pooled(fits[0]), pooled(fits[1])}, registration, least_scale);
 }
 
 }  // namespace seampath::detail
