@@ -36,7 +36,7 @@ Scene make_multi(const SceneOptions& o) {
     straight(JointKind::lap, lap, x);
     straight(JointKind::fillet, stiffener, -x);
     straight(JointKind::fillet, stiffener + t, x);
-    add_seam(scene, JointKind::fillet, true, 0, 2 * portable::kPi, [&](double angle) {
+    add_seam(scene, JointKind::saddle, true, 0, 2 * portable::kPi, [&](double angle) {
         const auto [s, c] = portable::sincos(angle);
         const Vector3d out(c, s, 0);
         return CurvePoint{pipe + radius * out, z, out};

@@ -144,7 +144,7 @@ Scene make_pipe_on_plate(const SceneOptions& o) {
     scene.box.extend(
         end + Vector3d(branch.radius * branch.cos_lean, branch.radius, branch.radius * std::abs(branch.sin_lean)));
     scene.box.extend(end - Vector3d(branch.radius * branch.cos_lean, branch.radius, 0));
-    add_seam(scene, JointKind::fillet, true, 0, 2 * kPi, [&](double angle) {
+    add_seam(scene, JointKind::saddle, true, 0, 2 * kPi, [&](double angle) {
         const auto phi = portable::sincos(angle);
         return CurvePoint{branch.at_height(phi, 0), Vector3d::UnitZ(), branch.radial(phi)};
     });

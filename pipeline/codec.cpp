@@ -38,10 +38,22 @@ void members(auto& archive, Is<GrooveStation> auto& v) {
     archive("area_mm2", area_mm2);
 }
 
+void members(auto& archive, Is<FlankSurface> auto& v) {
+    auto& [shape, point, direction, size, bore, explains, scale, taken, origin, e0, e1, lever, covariance] = v;
+    archive("shape", shape)("point_mm", point)("direction", direction)("size", size)("bore", bore);
+    archive("explains", explains)("scale_mm", scale)("share_taken", taken);
+    archive("origin_mm", origin)("e0", e0)("e1", e1)("lever_mm", lever)("covariance_mm2", covariance);
+}
+
+void members(auto& archive, Is<SeamSurfaces> auto& v) {
+    auto& [first, second, covariance_between] = v;
+    archive("first", first)("second", second)("covariance_between_mm2", covariance_between);
+}
+
 void members(auto& archive, Is<Seam> auto& v) {
-    auto& [kind, closed, confidence, kind_reason, points, groove] = v;
+    auto& [kind, closed, confidence, kind_reason, points, groove, surfaces] = v;
     archive("kind", kind)("closed", closed)("confidence", confidence)("kind_reason", kind_reason)("points", points);
-    archive("groove", groove);
+    archive("groove", groove)("surfaces", surfaces);
 }
 
 void members(auto& archive, Is<Extraction> auto& v) {
@@ -66,10 +78,17 @@ void members(auto& archive, Is<FlankSample> auto& v) {
     archive("station_mm", station_mm)("n1", n1)("n2", n2)("sigma_mm", sigma_mm)("modelled", modelled);
 }
 
+void members(auto& archive, Is<SaddleParameters> auto& v) {
+    auto& [header, branch_radius_mm, header_radius_mm, angle_rad, offset_mm] = v;
+    archive("header", header)("branch_radius_mm", branch_radius_mm)("header_radius_mm", header_radius_mm);
+    archive("angle_rad", angle_rad)("offset_mm", offset_mm);
+}
+
 void members(auto& archive, Is<SeamModel> auto& v) {
-    auto& [kind, closed, curve, length_mm, flanks, rms_mm, max_mm, degrees_of_freedom] = v;
+    auto& [kind, closed, curve, length_mm, flanks, rms_mm, max_mm, degrees_of_freedom, model, reason, saddle] = v;
     archive("kind", kind)("closed", closed)("curve", curve)("length_mm", length_mm)("flanks", flanks);
     archive("residual_rms_mm", rms_mm)("residual_max_mm", max_mm)("degrees_of_freedom", degrees_of_freedom);
+    archive("model", model)("reason", reason)("saddle", saddle);
 }
 
 void members(auto& archive, Is<DeviationSample> auto& v) {
@@ -109,7 +128,7 @@ public:
     static Json put(const T& value) {
         if constexpr (std::is_same_v<T, double>) {
             return std::isfinite(value) ? Json(value) : Json(std::isnan(value) ? "nan" : shortest(value));
-        } else if constexpr (std::is_same_v<T, JointKind> || std::is_same_v<T, WaypointKind>) {
+        } else if constexpr (std::is_enum_v<T>) {
             return name(value);
         } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
             return value;
@@ -134,6 +153,11 @@ public:
     }
 
     template <class T>
+    static Json put(const std::optional<T>& value) {
+        return value ? put(*value) : Json();
+    }
+
+    template <class T>
     Writer& operator()(const char* key, const T& value) {
         object_[key] = put(value);
         return *this;
@@ -153,6 +177,8 @@ public:
     static void get(const Json& json, T& value) {
         if constexpr (std::is_same_v<T, double>) {
             value = json.is_string() ? not_finite(json.get<std::string>()) : json.get<double>();
+        } else if constexpr (std::is_same_v<T, SurfaceShape>) {
+            value = static_cast<SurfaceShape>(position(json, kSurfaceShapeNames));
         } else if constexpr (std::is_same_v<T, JointKind>) {
             value = static_cast<JointKind>(position(json, kJointKindNames));
         } else if constexpr (std::is_same_v<T, WaypointKind>) {
@@ -179,6 +205,14 @@ public:
         values.resize(json.size());
         for (std::size_t i = 0; i < values.size(); ++i) {
             get(json.at(i), values[i]);
+        }
+    }
+
+    template <class T>
+    static void get(const Json& json, std::optional<T>& value) {
+        value.reset();
+        if (!json.is_null()) {
+            get(json, value.emplace());
         }
     }
 

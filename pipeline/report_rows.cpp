@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/fields.hpp"
+#include "pipeline/report_seams.hpp"
 #include "pipeline/report_text.hpp"
 #include "stages/error.hpp"
-#include "stages/geometry/bspline.hpp"
 
 namespace seampath {
 namespace {
@@ -17,129 +17,6 @@ namespace {
 /// What a program file may differ from the plan beyond its own rounding: the mathematics of turning poses there and
 /// back.
 constexpr double kReadBackMarginMm = 1e-6;
-
-/// Stations at which the curvature of a seam is looked at.
-constexpr int kCurvatureStations = 1000;
-
-ReportRow number(std::string name, std::string label, double value, std::string unit, int decimals = 3) {
-    return {std::move(name), std::move(label), value, std::move(unit), "", decimals};
-}
-
-ReportRow count(std::string name, std::string label, std::size_t value) {
-    return {std::move(name), std::move(label), static_cast<std::int64_t>(value), "", "", 0};
-}
-
-ReportRow fact(std::string name, std::string label, std::string_view value) {
-    return {std::move(name), std::move(label), valid_utf8(value), "", "", 0};
-}
-
-ReportRow judged(ReportRow row, bool pass) {
-    row.verdict = pass ? "pass" : "fail";
-    return row;
-}
-
-/// Length of the polyline through a seam's points over which they were bridged rather than measured.
-double modelled_length(const Seam& seam) {
-    double length = 0;
-    const std::size_t n = seam.points.size();
-    for (std::size_t i = 0; i + (seam.closed ? 0 : 1) < n; ++i) {
-        const SeamPoint& a = seam.points[i];
-        const SeamPoint& b = seam.points[(i + 1) % n];
-        length += a.modelled || b.modelled ? (b.p - a.p).norm() : 0;
-    }
-    return length;
-}
-
-double max_curvature(const CubicBSpline& curve) {
-    double most = 0;
-    const double first = first_parameter(curve), last = last_parameter(curve);
-    for (int i = 0; i <= kCurvatureStations; ++i) {
-        most = std::max(most, curvature(curve, first + (last - first) * i / kCurvatureStations));
-    }
-    return most;
-}
-
-double median_sigma(const Seam& seam) {
-    std::vector<double> sigma;
-    std::transform(seam.points.begin(), seam.points.end(), std::back_inserter(sigma),
-                   [](const SeamPoint& p) { return p.sigma_mm; });
-    if (sigma.empty()) {
-        return 0;
-    }
-    const auto middle = sigma.begin() + static_cast<std::ptrdiff_t>(sigma.size() / 2);
-    std::nth_element(sigma.begin(), middle, sigma.end());
-    return *middle;
-}
-
-double max_sigma(const Seam& seam) {
-    double most = 0;
-    for (const SeamPoint& p : seam.points) {
-        most = std::max(most, p.sigma_mm);
-    }
-    return most;
-}
-
-ReportRow planned_row(const PartResult& part, std::size_t i) {
-    const auto& seams = part.planned_seams;
-    const bool planned = std::find(seams.begin(), seams.end(), static_cast<int>(i)) != seams.end();
-    return {"planned", "Torch path planned", planned, "", "", 0};
-}
-
-ReportRow curvature_row(const SeamModel& model) {
-    return number("max_curvature_per_mm", "Largest curvature", max_curvature(model.curve), "1/mm", 4);
-}
-
-ReportSeam nominal_report(const PartResult& part, std::size_t i) {
-    const SeamModel& model = part.models[i];
-    return {true,
-            "computed from nominal dimensions; there is no scan to hold it against",
-            {
-                fact("kind", "Joint", name(model.kind)),
-                {"closed", "Closed", model.closed, "", "", 0},
-                number("length_mm", "Length", model.length_mm, "mm"),
-                count("control_points", "Control points of the curve", model.curve.control.size()),
-                number("curve_error_rms_mm", "Curve from the exact seam, rms", model.residual_rms_mm, "mm", 9),
-                number("curve_error_max_mm", "Curve from the exact seam, largest", model.residual_max_mm, "mm", 9),
-                curvature_row(model),
-                planned_row(part, i),
-            }};
-}
-
-ReportSeam seam_report(const PartResult& part, std::size_t i) {
-    const Seam& seam = part.extraction.seams[i];
-    const SeamModel& model = part.models[i];
-    const Deviation& deviation = part.deviations[i];
-    return {
-        deviation.pass,
-        valid_utf8(deviation.verdict),
-        {
-            fact("kind", "Joint", name(model.kind)),
-            {"closed", "Closed", model.closed, "", "", 0},
-            number("confidence", "Confidence of detection", seam.confidence, "", 2),
-            number("length_mm", "Length", model.length_mm, "mm"),
-            number("modelled_length_mm", "Bridged by model", modelled_length(seam), "mm"),
-            count("points", "Extracted points", seam.points.size()),
-            number("sigma_median_mm", "Uncertainty of a point, median 1σ", median_sigma(seam), "mm"),
-            number("sigma_max_mm", "Uncertainty of a point, largest 1σ", max_sigma(seam), "mm"),
-            count("nodes", "Nodes", part.nodes[i].index.size()),
-            number("node_chord_error_mm", "Largest chord error between nodes", part.nodes[i].max_chord_error_mm, "mm"),
-            number("residual_rms_mm", "Points from fitted curve, rms", model.residual_rms_mm, "mm"),
-            number("residual_max_mm", "Points from fitted curve, largest", model.residual_max_mm, "mm"),
-            number("degrees_of_freedom", "Effective coefficients of the fit", model.degrees_of_freedom, "", 0),
-            curvature_row(model),
-            number("deviation_signed_mean_mm", "Deviation, signed mean", deviation.signed_mean_mm, "mm"),
-            number("deviation_rms_mm", "Deviation, rms", deviation.rms_mm, "mm"),
-            number("deviation_p50_mm", "Deviation, p50", deviation.p50_mm, "mm"),
-            number("deviation_p95_mm", "Deviation, p95", deviation.p95_mm, "mm"),
-            number("deviation_p997_mm", "Deviation, p99.7", deviation.p997_mm, "mm"),
-            number("deviation_max_mm", "Deviation, largest", deviation.max_mm, "mm"),
-            judged(number("coverage_percent", "Checked on scan", 100 * deviation.coverage, "%", 1),
-                   deviation.coverage >= part.config.validate.min_coverage),
-            number("tolerance_mm", "Tolerance", deviation.tolerance_mm, "mm"),
-            judged(fact("in_tolerance", "In tolerance", deviation.pass ? "yes" : "no"), deviation.pass),
-            planned_row(part, i),
-        }};
-}
 
 ReportProgram program_report(const ProgramFile& file) {
     // Half a unit of the last place on each of three axes.

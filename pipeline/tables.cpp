@@ -1,6 +1,8 @@
 #include "pipeline/tables.hpp"
 
 #include <initializer_list>
+#include <numbers>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -31,8 +33,28 @@ Json positions_json(const std::vector<Eigen::Vector3d>& points) {
     return list;
 }
 
+void put_estimate(Json& json, const std::string& name, const std::string& unit, const std::optional<Measured>& estimate,
+                  double factor = 1) {
+    if (estimate) {
+        json[name + "_" + unit] = factor * estimate->value;
+        json[name + "_sigma_" + unit] = factor * estimate->sigma;
+    }
+}
+
+Json saddle_json(const SaddleParameters& saddle) {
+    Json json{{"header", name(saddle.header)}};
+    put_estimate(json, "branch_radius", "mm", saddle.branch_radius_mm);
+    put_estimate(json, "header_radius", "mm", saddle.header_radius_mm);
+    put_estimate(json, "angle", "deg", saddle.angle_rad, 180 / std::numbers::pi);
+    put_estimate(json, "offset", "mm", saddle.offset_mm);
+    return json;
+}
+
 Json model_json(const SeamModel& model) {
-    return {{"type", "cubic_b_spline"},
+    return {{"name", model.model},
+            {"reason", model.reason},
+            {"saddle", model.saddle ? saddle_json(*model.saddle) : Json()},
+            {"type", "cubic_b_spline"},
             {"periodic", model.curve.periodic},
             {"knots_mm", model.curve.knots},
             {"control_points_mm", positions_json(model.curve.control)},

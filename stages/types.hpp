@@ -35,7 +35,8 @@ struct Scan {
     Eigen::Vector3d position(std::size_t i) const { return origin_mm + points[i].cast<double>(); }
 };
 
-/// Joint kinds. `saddle` is a fillet between two pipes whose model is the exact intersection curve.
+/// Joint kinds. `saddle` is a fillet round a pipe whose model is the exact curve in which the pipe meets another pipe,
+/// a plate, a cone or a sphere.
 enum class JointKind { fillet, lap, butt, v_groove, corner, saddle };
 inline constexpr std::array<std::string_view, 6> kJointKindNames{"fillet",   "lap",    "butt",
                                                                  "v-groove", "corner", "saddle"};
@@ -52,7 +53,8 @@ struct SeamPoint {
     bool modelled = false;  ///< true: bridged, not measured (support on both sides only)
 };
 
-/// A number and its 1-sigma; both NaN where the scan does not show it.
+/// A number and its 1-sigma; both NaN where the scan does not show it. Also one known from elsewhere, e.g. a drawing
+/// and its tolerance.
 struct Measured {
     double value = std::numeric_limits<double>::quiet_NaN();
     double sigma = std::numeric_limits<double>::quiet_NaN();
@@ -71,6 +73,38 @@ struct GrooveStation {
     Measured area_mm2;      ///< of the section between the plates, the tops and the root
 };
 
+enum class SurfaceShape { plane, cylinder, cone, sphere };
+inline constexpr std::array<std::string_view, 4> kSurfaceShapeNames{"plane", "cylinder", "cone", "sphere"};
+inline std::string_view name(SurfaceShape shape) {
+    return kSurfaceShapeNames[static_cast<std::size_t>(shape)];
+}
+
+/// One flank of a seam as one surface: the plane, cylinder, cone or sphere that is nearest to all the flank's points
+/// along the seam. Only a fit that `explains` them is what the flank is; of any other the rest tells how far it is off.
+struct FlankSurface {
+    SurfaceShape shape = SurfaceShape::plane;
+    Eigen::Vector3d point{0, 0, 0};      ///< of the plane; on the axis; apex; centre, mm
+    Eigen::Vector3d direction{0, 0, 1};  ///< unit: normal out of the material, or axis; of no use for a sphere
+    double size = 0;                     ///< radius, mm, or half angle, rad; 0 for a plane
+    bool bore = false;                   ///< the material lies around the surface
+    bool explains = false;               ///< the points scatter about it as about their windows' own surfaces
+    double scale_mm = 0;                 ///< robust 1-sigma of the points' residuals
+    double share_taken = 0;              ///< of the points that the robust fit took, 0..1
+    /// What the covariance's parameters (stages/geometry/surface_parameters.hpp) count from.
+    Eigen::Vector3d origin{0, 0, 0}, e0{1, 0, 0}, e1{0, 1, 0};
+    double lever_mm = 1;
+    /// Of the parameters, row by row, mm^2: of noise and of shifts of the views, as far as either is known.
+    std::vector<double> covariance;
+};
+
+/// Both flanks of a seam as surfaces, where they were fitted.
+struct SeamSurfaces {
+    std::optional<FlankSurface> first, second;
+    /// Of the first's parameters with the second's, row by row, mm^2: both see the same shifts of the views. Empty when
+    /// one is missing.
+    std::vector<double> covariance_between;
+};
+
 /// Ordered points of one seam. Flank 1 and 2 are so that the cross product n1 x n2 points along travel. A closed seam
 /// does not repeat its first point.
 struct Seam {
@@ -80,6 +114,7 @@ struct Seam {
     std::string kind_reason;            ///< what was seen that makes it one, e.g. "surfaces meet at 87 deg, ..."
     std::vector<SeamPoint> points;      ///< at least 4, in order along the seam
     std::vector<GrooveStation> groove;  ///< one a point of a butt joint or V-groove, otherwise empty
+    SeamSurfaces surfaces;
 };
 
 /// The few points that carry the shape of a seam.
@@ -105,6 +140,15 @@ struct FlankSample {
     bool modelled = false;
 };
 
+/// What a saddle is made of: a branch, which is a pipe, on a header.
+struct SaddleParameters {
+    SurfaceShape header = SurfaceShape::plane;
+    Measured branch_radius_mm;
+    std::optional<Measured> header_radius_mm;  ///< cylinder, sphere
+    std::optional<Measured> angle_rad;         ///< between the axes, or the branch's axis and a plane
+    std::optional<Measured> offset_mm;         ///< between the axes, or of a sphere's centre from the branch's axis
+};
+
 /// The curve that a seam is, and how well it follows the extracted points.
 struct SeamModel {
     JointKind kind = JointKind::fillet;
@@ -114,7 +158,11 @@ struct SeamModel {
     std::vector<FlankSample> flanks;  ///< at least 2; closed seams: stations in [0, length), wraps round
     double residual_rms_mm = 0;       ///< orthogonal distance of the extracted points from the curve
     double residual_max_mm = 0;
-    double degrees_of_freedom = 0;  ///< effective: 3 times the trace of the hat matrix of one coordinate
+    double degrees_of_freedom = 0;  ///< effective: 3 times the trace of the hat matrix of one coordinate; a saddle's
+                                    ///< parameters
+    std::string model;              ///< by name, e.g. "spline", "saddle"
+    std::string reason;             ///< why that one, one sentence
+    std::optional<SaddleParameters> saddle;
 };
 
 /// Where one sample of the model lies relative to the scan's two flank surfaces.

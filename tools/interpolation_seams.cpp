@@ -39,7 +39,7 @@ std::vector<SeamMethod> all_methods() {
     for (std::size_t m = 0; m < kFitModelNames.size(); ++m) {
         FitOptions options;
         options.model = static_cast<FitModel>(m);
-        if (options.model == FitModel::spline) {
+        if (!interpolates(options.model)) {
             continue;
         }
         const std::size_t objectives = options.model == FitModel::parametric ? kFitParametrizationNames.size() : 1;
@@ -91,7 +91,9 @@ SeamRanking rank(const Seam& seam, const MeasuredSeam& measured, const std::vect
 
 MeasuredSeam measure_seam(const Seam& seam, const Scan& scan, const ValidateOptions& options) {
     MeasuredSeam measured;
-    measured.spline = fit(seam, {}, {});
+    FitOptions smoothing;
+    smoothing.model = FitModel::spline;
+    measured.spline = fit(seam, {}, smoothing);
     measured.deviation = validate(measured.spline, scan, options);
     const ArcLength arc(measured.spline.curve);
     for (const DeviationSample& sample : measured.deviation.samples) {

@@ -82,10 +82,31 @@ std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& 
     return joints;
 }
 
+// A pipe on another pipe; or a pipe that the seam goes all round, on a plate, cone or sphere. The explanation of both
+// flanks by one surface each is what makes it a saddle and no mere fillet.
+bool is_saddle(const SeamSurfaces& surfaces, bool closed) {
+    const auto& [first, second, between] = surfaces;
+    if (!first || !second || !first->explains || !second->explains) {
+        return false;
+    }
+    const bool one = first->shape == SurfaceShape::cylinder, other = second->shape == SurfaceShape::cylinder;
+    return (one && other) || ((one || other) && closed);
+}
+
 Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
     Seam seam;
     seam.kind = fold.convex ? JointKind::corner : JointKind::fillet;
     seam.closed = fold.closed;
+    if (!fold.convex) {  // those of a corner have their material on the wrong side
+        seam.surfaces = fold.surfaces;
+        seam.kind = is_saddle(fold.surfaces, fold.closed) ? JointKind::saddle : JointKind::fillet;
+    }
+    for (auto* surface : {&seam.surfaces.first, &seam.surfaces.second}) {
+        if (*surface) {
+            (*surface)->point += origin;
+            (*surface)->origin += origin;
+        }
+    }
     const double outwards = fold.convex ? -1 : 1;
     std::vector<double> bends;
     for (const TrackPoint& point : fold.way) {
@@ -97,7 +118,8 @@ Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
     // Half a radian between the flanks and nobody doubts that they are two.
     seam.confidence = std::min(1.0, bend / 0.5);
     seam.kind_reason = std::string("two surfaces meet ") + (fold.convex ? "around the material" : "around the air") +
-                       " at " + fixed(180 - bend * 180 / std::numbers::pi, 0) + " deg";
+                       " at " + fixed(180 - bend * 180 / std::numbers::pi, 0) + " deg" +
+                       (seam.kind == JointKind::saddle ? ", one of them a pipe" : "");
     return seam;
 }
 
@@ -134,7 +156,7 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
     const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1),
                  registration = result.registration_mm * (1 + 0.6 / freedom);
     for (Fold& fold : folds) {
-        settle_on_whole_flanks(measuring, registration, fold.way);
+        fold.surfaces = settle_on_whole_flanks(measuring, registration, fold.way);
         result.seams.push_back(seam_of(fold, around.scan.origin_mm));
     }
     return result;

@@ -12,6 +12,7 @@ struct Fold {
     std::vector<TrackPoint> way;
     bool closed = false;
     bool convex = false;  ///< `way` is inside out: its normals point into the material
+    SeamSurfaces surfaces = {};  ///< in the frame of `way`
 };
 
 double length_of(const std::vector<TrackPoint>& way);  ///< mm

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "stages/extract/joint.hpp"
 #include "stages/extract/pool.hpp"
 #include "stages/extract/registration.hpp"
 #include "stages/geometry/robust.hpp"
@@ -190,27 +191,40 @@ bool contradicted(const std::vector<TrackPoint>& way, int k, const WholeFlank& w
     return quantile(squares, 0.5) > kMost * kMost * kMedianSquare;
 }
 
-std::optional<WholeFlank> whole_flank(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) {
-    const Pool pool = pool_of(tracker, way, k);
+/// The surface nearest to all of a flank's points, and the flank as that surface where it explains them.
+struct FlankFit {
+    Pool pool;
+    std::optional<SurfaceFit> nearest;
+    std::optional<WholeFlank> whole;
+};
+
+FlankFit fit_flank(const Tracker& tracker, const std::vector<TrackPoint>& way, int k, double least_scale) {
+    FlankFit best{pool_of(tracker, way, k), {}, {}};
+    const Pool& pool = best.pool;
     if (pool.points.size() < 100) {
-        return std::nullopt;
+        return best;
     }
-    const double least = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
-    std::optional<WholeFlank> best;
-    for (const auto& surface : {fit_plane(pool.points, pool.block, pool.normals.front(), least),
-                                fit_cylinder(pool.points, pool.block, pool.places, pool.normals, least)}) {
-        if (!surface || surface->share_taken() < kLeastTaken || surface->scale() > kMostScale * pool.scale) {
+    for (const auto& surface : {fit_plane(pool.points, pool.block, pool.normals.front(), least_scale),
+                                fit_cylinder(pool.points, pool.block, pool.places, pool.normals, least_scale)}) {
+        if (!surface) {
+            continue;
+        }
+        if (!best.whole && (!best.nearest || surface->scale() < best.nearest->scale())) {
+            best.nearest = surface;
+        }
+        if (surface->share_taken() < kLeastTaken || surface->scale() > kMostScale * pool.scale) {
             continue;
         }
         WholeFlank whole = shrunk(way, k, pool, *surface);
-        if ((!best || whole.variance < best->variance) && !contradicted(way, k, whole)) {
-            best = std::move(whole);
+        if ((!best.whole || whole.variance < best.whole->variance) && !contradicted(way, k, whole)) {
+            best.nearest = surface;
+            best.whole = std::move(whole);
         }
     }
-    if (best) {
-        const ShiftOfSurface shift(best->surface, pool);
+    if (best.whole) {
+        const ShiftOfSurface shift(best.whole->surface, pool);
         for (const TrackPoint& place : way) {
-            best->shift.push_back(shift.at(place.section.p));
+            best.whole->shift.push_back(shift.at(place.section.p));
         }
     }
     return best;
@@ -254,8 +268,11 @@ double variance_across(const TrackPoint& place, std::size_t i, int k, const std:
 
 }  // namespace
 
-void settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
-    const std::array<std::optional<WholeFlank>, 2> whole{whole_flank(tracker, way, 0), whole_flank(tracker, way, 1)};
+SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
+    const double least_scale = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
+    const std::array<FlankFit, 2> fits{fit_flank(tracker, way, 0, least_scale),
+                                       fit_flank(tracker, way, 1, least_scale)};
+    const std::array<std::optional<WholeFlank>, 2> whole{fits[0].whole, fits[1].whole};
     const std::vector<double> shift[2] = {shift_of_windows(tracker, way, 0), shift_of_windows(tracker, way, 1)};
     for (std::size_t i = 0; i < way.size(); ++i) {
         if (way[i].modelled && !(whole[0] && whole[1])) {
@@ -268,6 +285,10 @@ void settle_on_whole_flanks(const Tracker& tracker, double registration, std::ve
         }
         way[i].sigma = std::sqrt(variance) / std::max(1e-6, std::sin(way[i].bend));
     }
+    const auto pooled = [](const FlankFit& fit) {
+        return PooledFlank{&fit.pool, fit.nearest ? &*fit.nearest : nullptr, fit.whole.has_value()};
+    };
+    return joint_surfaces({pooled(fits[0]), pooled(fits[1])}, registration, least_scale);
 }
 
 }  // namespace seampath::detail

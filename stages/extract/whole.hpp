@@ -11,7 +11,7 @@ namespace seampath::detail {
 /// of them, and what each place departs from it is kept as far as it is more than noise (a random effect, shrunk by its
 /// share of the variance). A flank that no such surface explains better than its own windows do stays as it was
 /// measured. Every sigma then holds noise and, from the 1-sigma `registration` (mm) of the views' shifts, what these
-/// do.
-void settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way);
+/// do. Gives both flanks as surfaces, in the frame of the places.
+SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way);
 
 }  // namespace seampath::detail

@@ -2,44 +2,48 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "stages/error.hpp"
 #include "stages/fit/interpolated.hpp"
-#include "stages/fit/outliers.hpp"
-#include "stages/fit/pspline.hpp"
-#include "stages/fit/smoothing.hpp"
+#include "stages/fit/saddle_model.hpp"
+#include "stages/fit/smoothed.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/robust.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
 
-constexpr int kRounds = 4;  // a fifth moves the curve by less than a hundredth of its error
+using Normals = std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>;
 
-// Normals averaged over a few neighbours: a torch should not shake with the noise of single fits.
-std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model, const std::vector<double>& u) {
+// Averaged over a few neighbours: a torch should not shake with the noise of single fits.
+Normals averaged_normals(const Seam& seam) {
     constexpr std::ptrdiff_t kHalf = 3;
-    const ArcLength arc(model.curve);
     const auto n = static_cast<std::ptrdiff_t>(seam.points.size());
-    std::vector<FlankSample> samples;
+    Normals normals;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
-        FlankSample sample;
-        sample.station_mm = arc.station(u[static_cast<std::size_t>(i)]);
-        sample.n1 = sample.n2 = Eigen::Vector3d::Zero();
+        Eigen::Vector3d n1 = Eigen::Vector3d::Zero(), n2 = n1;
         const std::ptrdiff_t half = seam.closed ? kHalf : std::min({kHalf, i, n - 1 - i});
         for (std::ptrdiff_t k = -half; k <= half; ++k) {
             const SeamPoint& q = seam.points[static_cast<std::size_t>((i + k + n) % n)];
-            sample.n1 += q.n1 / (q.sigma_mm * q.sigma_mm);
-            sample.n2 += q.n2 / (q.sigma_mm * q.sigma_mm);
+            n1 += q.n1 / (q.sigma_mm * q.sigma_mm);
+            n2 += q.n2 / (q.sigma_mm * q.sigma_mm);
         }
-        sample.n1.normalize();
-        sample.n2.normalize();
-        const SeamPoint& p = seam.points[static_cast<std::size_t>(i)];
-        sample.sigma_mm = p.sigma_mm;
-        sample.modelled = p.modelled;
-        samples.push_back(sample);
+        normals.emplace_back(n1.normalized(), n2.normalized());
+    }
+    return normals;
+}
+
+std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model, const std::vector<double>& u,
+                                       const Normals& normals) {
+    const ArcLength arc(model.curve);
+    std::vector<FlankSample> samples;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const SeamPoint& p = seam.points[i];
+        samples.push_back({arc.station(u[i]), normals[i].first, normals[i].second, p.sigma_mm, p.modelled});
     }
     std::stable_sort(samples.begin(), samples.end(),
                      [](const FlankSample& a, const FlankSample& b) { return a.station_mm < b.station_mm; });
@@ -62,161 +66,82 @@ CurvePoints points_of(const Seam& seam, const Eigen::Vector3d& middle) {
     return points;
 }
 
-// Parameters by chord length. No chord counts for more than those that span it, so that a point off to a side makes no
-// detour. Returns the parameter of the end: where a closed curve is back at its first point.
-double set_parameters(CurvePoints& points, const std::vector<Eigen::Vector3d>& q, bool closed) {
-    const auto n = static_cast<std::ptrdiff_t>(q.size());
-    constexpr std::pair<int, int> kSpanning[] = {{-1, 0}, {-2, 0}, {-1, 1}, {-2, 1}, {-3, 1}, {-2, 2}};
-    double u = 0;
-    points.u.assign(q.size(), 0);
-    for (std::ptrdiff_t i = 1; i < n + (closed ? 1 : 0); ++i) {
-        double step = std::numeric_limits<double>::infinity();
-        for (const auto& [before, behind] : kSpanning) {
-            if (closed || (i + before >= 0 && i + behind < n)) {
-                const auto at = [&](std::ptrdiff_t k) { return q[static_cast<std::size_t>((k + 3 * n) % n)]; };
-                step = std::min(step, (at(i + behind) - at(i + before)).norm());
-            }
-        }
-        u += step;
-        if (i < n) {
-            points.u[static_cast<std::size_t>(i)] = u;
-        }
-    }
-    return u;
-}
-
-// A break at every point, but for those that crowd.
-std::vector<double> breaks_at(const CurvePoints& points, double end) {
-    const double apart = 0.3 * end / static_cast<double>(points.p.size());
-    std::vector<double> breaks{0};
-    for (const double u : points.u) {
-        if (u > breaks.back() + apart && u < end - apart) {
-            breaks.push_back(u);
-        }
-    }
-    breaks.push_back(end);
-    return breaks;
-}
-
-// Merges spans in which the curve is stiff, so that about so many are left for each coefficient it uses.
-void thin(std::vector<double>& breaks, Smoothing& s, const PenalisedSpline& spline) {
-    constexpr double kSpansPerFreedom = 3, kFewestSpans = 8;
-    const double longest = (breaks.back() - breaks.front()) / kFewestSpans;
-    std::vector<double> kept{breaks.front()}, lambda;
-    double due = 0, log_lambda = 0;
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-        due += kSpansPerFreedom * spline.freedom(k, s.lambda[k]);
-        log_lambda += (breaks[k + 1] - breaks[k]) * std::log(s.lambda[k]);
-        if (due >= 1 || k + 2 == breaks.size() || breaks[k + 2] - kept.back() > longest) {
-            lambda.push_back(std::exp(log_lambda / (breaks[k + 1] - kept.back())));
-            kept.push_back(breaks[k + 1]);
-            due = std::clamp(due - 1, 0.0, 1.0);
-            log_lambda = 0;
-        }
-    }
-    breaks = std::move(kept);
-    s.lambda = std::move(lambda);
-}
-
-// Parameters of the points of the curve nearest to the points. The ends of an open curve stay where the seam's ends
-// are.
-void project(CurvePoints& points, const CubicBSpline& curve) {
-    const std::size_t fixed_end = curve.periodic ? 0 : 1;
-    for (std::size_t i = fixed_end; i + fixed_end < points.p.size(); ++i) {
-        points.u[i] = nearest_parameter(curve, points.p[i], points.u[i]);
-    }
-}
-
-// New parameters for points and breaks: length along the curve. Uneven speed would count as roughness.
-void measure_along(CurvePoints& points, std::vector<double>& breaks, const CubicBSpline& curve) {
-    constexpr int kPieces = 4;
-    std::vector<double> u{breaks.front()}, length{0};
-    Eigen::Vector3d last = position(curve, u[0]);
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-        for (int piece = 1; piece <= kPieces; ++piece) {
-            u.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * piece / kPieces);
-            const Eigen::Vector3d p = position(curve, piece < kPieces ? u.back() : std::nextafter(u.back(), 0.0));
-            length.push_back(length.back() + (p - last).norm());
-            last = p;
-        }
-    }
-    const auto along = [&](double x) {
-        const auto k =
-            std::clamp<std::ptrdiff_t>(std::upper_bound(u.begin(), u.end(), x) - u.begin(), 1, std::ssize(u) - 1);
-        const auto i = static_cast<std::size_t>(k);
-        return length[i - 1] + (length[i] - length[i - 1]) * (x - u[i - 1]) / (u[i] - u[i - 1]);
-    };
-    for (double& x : points.u) {
-        x = along(x);
-    }
-    for (double& x : breaks) {
-        x = along(x);
-    }
-}
-
-// The first round finds about how free the curve is, on knots at every point; the second whether that hangs on the
-// place.
-void choose_smoothing(PenalisedSpline& spline, const CurvePoints& points, Smoothing& s, int round, bool& uneven) {
-    if (round == 0) {
-        smooth_evenly(spline, points, s);
-        return;
-    }
-    if (round == 1) {
-        smooth_evenly(spline, points, s);
-        Smoothing even = s;
-        const double even_risk = set_level(spline, points, even);
-        smooth_locally(spline, points, s);
-        uneven = set_level(spline, points, s) < even_risk;
-        s = uneven ? s : even;
-    } else if (round == 2 && uneven) {
-        smooth_evenly(spline, points, s);
-        smooth_locally(spline, points, s);
-    }
-    set_level(spline, points, s);
-}
-
-FittedCurve fit_curve(CurvePoints& points, bool closed) {
-    double end = set_parameters(points, points.p, closed);
-    if (!(end > 0)) {
-        throw InputError("fit: the seam has no length; all its points coincide; check the scan");
-    }
-    const Loose loose = drop_outliers(points, breaks_at(points, end), closed);
-    const std::vector<double> given = points.weight;
-    std::vector<Eigen::Vector3d> q;
-    for (const double u : points.u) {
-        q.push_back(position(loose.curve, u));
-    }
-    end = set_parameters(points, q, closed);
-    std::vector<double> breaks = breaks_at(points, end);
-    Smoothing s;
-    s.lambda = loose_lambda(points, breaks);
-    CubicBSpline curve;
-    bool uneven = false;
-    for (int round = 0; round < kRounds; ++round) {
-        PenalisedSpline spline(breaks, closed);
-        spline.take(points);
-        choose_smoothing(spline, points, s, round, uneven);
-        project(points, spline.curve());
-        weigh(points, given, loose.bulge, spline.curve());
-        curve = spline.curve();
-        if (round + 1 < kRounds) {
-            thin(breaks, s, spline);
-            measure_along(points, breaks, curve);
-        }
-    }
-    return {std::move(curve), s.freedom};
-}
-
 // An option that changes nothing would let its user believe that it did.
 void check_options(const FitOptions& o) {
     const std::string model = "; fit.model is " + std::string(name(o.model)) + "; ";
-    if (o.model == FitModel::spline && o.axis != FitAxis::length) {
+    if (!interpolates(o.model) && o.axis != FitAxis::length) {
         throw InputError("fit: fit.axis is for models that interpolate" + model + "set fit.axis to length");
     }
     if (o.model != FitModel::parametric && o.parametrization != Objective::chord) {
         throw InputError("fit: fit.parametrization is for the parametric model" + model +
                          "set fit.model to parametric or fit.parametrization to chord");
     }
+    const bool saddle = o.model == FitModel::automatic || o.model == FitModel::saddle;
+    for (const auto* known : {&o.branch_radius_mm, &o.header_radius_mm, &o.angle_deg, &o.offset_mm}) {
+        if (!saddle && (*known)[1] != 0) {
+            throw InputError("fit: fit.branch_radius_mm, header_radius_mm, angle_deg and offset_mm are for a saddle" +
+                             model + "set fit.model to auto or saddle, or these to [0, 0]");
+        }
+    }
+}
+
+std::optional<Measured> known(const std::vector<double>& given, const char* key, double unit = 1) {
+    ensure(given.size() == 2, "a value and its sigma");
+    if (given[1] == 0 && given[0] != 0) {
+        throw InputError(std::string("fit: fit.") + key + " is " + shortest(given[0]) +
+                         " with a sigma of 0; a sigma above 0 is needed, e.g. [" + shortest(given[0]) +
+                         ", 0.1]; [0, 0] is for nothing known");
+    }
+    return given[1] == 0 ? std::nullopt : std::optional(Measured{unit * given[0], unit * given[1]});
+}
+
+SaddleNominals nominals_of(const FitOptions& o) {
+    return {known(o.branch_radius_mm, "branch_radius_mm"), known(o.header_radius_mm, "header_radius_mm"),
+            known(o.angle_deg, "angle_deg", std::numbers::pi / 180), known(o.offset_mm, "offset_mm")};
+}
+
+// Curve, freedom, model and reason. The points get their parameters on the curve. Of a saddle its normals, else those
+// of the points.
+Normals fit_curve(const Seam& seam, const Nodes& nodes, const FitOptions& options, const Eigen::Vector3d& middle,
+                  CurvePoints& points, SeamModel& model) {
+    model.model = name(options.model);
+    model.reason = "fit.model asks for it";
+    if (interpolates(options.model)) {
+        const FittedCurve line = interpolate_nodes(points, nodes, seam.closed, options);
+        model.curve = line.curve;
+        model.degrees_of_freedom = 3 * line.freedom;
+        return averaged_normals(seam);
+    }
+    const FittedCurve smooth = smooth_points(points, seam.closed);
+    if (options.model != FitModel::spline) {
+        const bool asked = options.model == FitModel::saddle;
+        std::variant<SaddleModel, NoSaddle> result =
+            NoSaddle{"a " + std::string(name(seam.kind)) + " is no fillet round a pipe"};
+        if (seam.kind == JointKind::fillet || seam.kind == JointKind::saddle) {
+            result = saddle_model(seam, middle, points, nominals_of(options), asked);
+        }
+        if (auto* saddle = std::get_if<SaddleModel>(&result)) {
+            model.kind = JointKind::saddle;
+            model.model = saddle->has_offsets ? "saddle with smooth offsets" : "saddle";
+            model.reason = saddle->reason;
+            model.saddle = saddle->parameters;
+            model.curve = std::move(saddle->curve);
+            model.degrees_of_freedom = saddle->degrees_of_freedom;
+            return std::move(saddle->normals);
+        }
+        const std::string& reason = std::get<NoSaddle>(result).reason;
+        if (asked) {
+            throw InputError("fit: fit.model saddle can't serve a seam of " +
+                             fixed(ArcLength(smooth.curve).length(), 1) + " mm: " + reason +
+                             "; set fit.model to auto or spline");
+        }
+        model.model = name(FitModel::spline);
+        model.reason = "no saddle: " + reason;
+        model.kind = seam.kind == JointKind::saddle ? JointKind::fillet : seam.kind;
+    }
+    model.curve = smooth.curve;
+    model.degrees_of_freedom = 3 * smooth.freedom;
+    return averaged_normals(seam);
 }
 
 }  // namespace
@@ -224,11 +149,16 @@ void check_options(const FitOptions& o) {
 Fields describe(FitOptions& o) {
     return {
         {"model", choice(o.model, kFitModelNames),
-         "spline through all seam points as their scatter allows; the others pass the nodes"},
+         "auto: saddle where a round pipe explains the points, else spline through all of them; the others pass nodes"},
         {"axis", choice(o.axis, kFitAxisNames), "what the nodes' x, y and z are interpolated over"},
         {"parametrization", choice(o.parametrization, kFitParametrizationNames),
          "how the parametric model spaces its parameter"},
-        {"degree", &o.degree, "highest degree of newton-forward, newton-backward, bessel and lagrange", within(1, 5)}};
+        {"degree", &o.degree, "highest degree of newton-forward, newton-backward, bessel and lagrange", within(1, 5)},
+        {"branch_radius_mm", &o.branch_radius_mm,
+         "known radius of a saddle's branch, [value, 1 sigma]; [0, 0]: unknown", at_least(0), 2},
+        {"header_radius_mm", &o.header_radius_mm, "known radius of its header, [value, 1 sigma]", at_least(0), 2},
+        {"angle_deg", &o.angle_deg, "known angle of the axes, or to a plate, [value, 1 sigma]", at_least(0), 2},
+        {"offset_mm", &o.offset_mm, "known distance of the axes, [value, 1 sigma]", at_least(0), 2}};
 }
 
 SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
@@ -243,25 +173,22 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
         middle += point.p / static_cast<double>(seam.points.size());
     }
     CurvePoints points = points_of(seam, middle);
-    auto [curve, freedom] = options.model == FitModel::spline ? fit_curve(points, seam.closed)
-                                                              : interpolate_nodes(points, nodes, seam.closed, options);
     SeamModel model;
     model.kind = seam.kind;
     model.closed = seam.closed;
+    const Normals normals = fit_curve(seam, nodes, options, middle, points, model);
     double sum = 0;
     for (std::size_t i = 0; i < points.p.size(); ++i) {
-        const double r = (position(curve, points.u[i]) - points.p[i]).norm();
+        const double r = (position(model.curve, points.u[i]) - points.p[i]).norm();
         sum += r * r;
         model.residual_max_mm = std::max(model.residual_max_mm, r);
     }
     model.residual_rms_mm = std::sqrt(sum / static_cast<double>(points.p.size()));
-    model.degrees_of_freedom = 3 * freedom;
-    for (Eigen::Vector3d& control : curve.control) {
+    for (Eigen::Vector3d& control : model.curve.control) {
         control += middle;
     }
-    model.curve = std::move(curve);
     model.length_mm = ArcLength(model.curve).length();
-    model.flanks = flank_samples(seam, model, points.u);
+    model.flanks = flank_samples(seam, model, points.u, normals);
     return model;
 }
 

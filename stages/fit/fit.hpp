@@ -6,10 +6,13 @@
 
 namespace seampath {
 
-/// What the curve is: a smoothing spline through all points, or one of the lines that Minejeva & Markovics, Choice of
+/// What the curve is: the saddle where a round pipe meets another surface, a smoothing spline through all points
+/// (`automatic` takes one of both), or one of the lines that Minejeva & Markovics, Choice of
 /// interpolation method for an arbitrary arc welding curve, compare, through the nodes. Their Stirling formula is not
 /// among them: its line jumps midway between nodes; Newton's divided differences give Lagrange's line.
 enum class FitModel {
+    automatic,
+    saddle,
     spline,
     natural,
     clamped,
@@ -24,9 +27,9 @@ enum class FitModel {
     bessel,
     lagrange
 };
-inline constexpr std::array<std::string_view, 13> kFitModelNames{
-    "spline", "natural",    "clamped",        "not-a-knot",      "periodic", "akima",   "pchip",
-    "linear", "parametric", "newton-forward", "newton-backward", "bessel",   "lagrange"};
+inline constexpr std::array<std::string_view, 15> kFitModelNames{
+    "auto",  "saddle", "spline",     "natural",        "clamped",         "not-a-knot", "periodic", "akima",
+    "pchip", "linear", "parametric", "newton-forward", "newton-backward", "bessel",     "lagrange"};
 inline std::string_view name(FitModel model) {
     return kFitModelNames[static_cast<std::size_t>(model)];
 }
@@ -40,17 +43,31 @@ inline constexpr std::array<std::string_view, 5> kFitParametrizationNames{
     kObjectiveNames[0], kObjectiveNames[1], kObjectiveNames[2], kObjectiveNames[3], kObjectiveNames[4]};
 
 struct FitOptions {
-    FitModel model = FitModel::spline;
+    FitModel model = FitModel::automatic;
     FitAxis axis = FitAxis::length;
     Objective parametrization = Objective::chord;
     int degree = 5;  ///< Minejeva & Markovics, section VII: no more
+    /// What is known of a saddle beforehand: value and 1-sigma; a sigma of 0: nothing.
+    std::vector<double> branch_radius_mm{0, 0}, header_radius_mm{0, 0}, angle_deg{0, 0}, offset_mm{0, 0};
 };
 Fields describe(FitOptions&);
+
+/// Whether the model is a line through nodes.
+bool interpolates(FitModel model);
 
 /// Whether the nodes of a model lie at equal steps; such a model takes as many as were placed, but sets them itself.
 bool sets_nodes(FitModel model);
 
 /// The curve of a seam.
+///
+/// `saddle`: the exact curve in which a branch, which is a pipe, meets a header (SaddleCurve). Both are the surfaces
+/// that extraction fitted to all points of the flanks, together with what `options` know beforehand.
+///
+/// `auto`: the saddle when it explains the seam's points: chi-squared, the mean square of their distances from it in
+/// their own sigmas, is below the 99 % point for as many degrees of freedom as there are independent points among them,
+/// told from how their distances correlate along the seam. When it does not, but the walls keep within what a pipe may
+/// be out of round, smooth offsets along both flanks' normals, penalised as the spline is, are added to it. Else the
+/// spline. SeamModel::reason says which and why. The B-spline that stands for a saddle is within 1e-5 mm of it.
 ///
 /// `spline`: penalised least-squares cubic B-spline through the seam points (Eilers & Marx 1996), periodic when the
 /// seam is closed. Points count with 1/sigma^2, of which only the ratios matter unless the points scatter less than
@@ -67,7 +84,7 @@ bool sets_nodes(FitModel model);
 ///
 /// Throws InputError for fewer than 6 points, a seam without length, neighbouring nodes in one place, and a model that
 /// can't serve the seam: `periodic` on an open one, `natural`, `clamped`, `not-a-knot` on a closed one, an axis along
-/// which the seam turns back, an option that the model has no use for.
+/// which the seam turns back, a `saddle` where there is none, an option that the model has no use for.
 SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options);
 
 }  // namespace seampath

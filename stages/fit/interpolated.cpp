@@ -7,7 +7,7 @@
 
 #include "stages/error.hpp"
 #include "stages/fit/node_table.hpp"
-#include "stages/fit/pieces.hpp"
+#include "stages/geometry/pieces.hpp"
 #include "stages/geometry/polynomial.hpp"
 
 namespace seampath {
@@ -54,10 +54,12 @@ Traits traits(FitModel model) {
             return {Method::bessel, kPositionOnly, false, true};
         case FitModel::lagrange:
             return {Method::lagrange, kPositionOnly, false, false};
+        case FitModel::automatic:
+        case FitModel::saddle:
         case FitModel::spline:
             break;
     }
-    ensure(false, "the smoothing spline interpolates nothing");
+    ensure(false, "neither saddle nor smoothing spline interpolates anything");
     return {};
 }
 
@@ -190,8 +192,12 @@ void project(CurvePoints& points, const Values& s, NodeTable table, const CubicB
 
 }  // namespace
 
+bool interpolates(FitModel model) {
+    return model != FitModel::automatic && model != FitModel::saddle && model != FitModel::spline;
+}
+
 bool sets_nodes(FitModel model) {
-    return model != FitModel::spline && traits(model).equal_steps;
+    return interpolates(model) && traits(model).equal_steps;
 }
 
 FittedCurve interpolate_nodes(CurvePoints& points, const Nodes& nodes, bool closed, const FitOptions& options) {

@@ -20,6 +20,18 @@ std::size_t controls_of(std::size_t breaks, bool periodic) {
 
 }  // namespace
 
+std::vector<double> breaks_at(const CurvePoints& points, double end) {
+    const double apart = 0.3 * end / static_cast<double>(points.p.size());
+    std::vector<double> breaks{0};
+    for (const double u : points.u) {
+        if (u > breaks.back() + apart && u < end - apart) {
+            breaks.push_back(u);
+        }
+    }
+    breaks.push_back(end);
+    return breaks;
+}
+
 std::vector<double> loose_lambda(const CurvePoints& points, const std::vector<double>& breaks) {
     // The penalty halves a wave of angular frequency f at lambda f^6 = weight / spacing; here f is half of what points
     // of that spacing can carry.

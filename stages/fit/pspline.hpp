@@ -15,6 +15,15 @@ struct CurvePoints {
     std::vector<double> weight;
 };
 
+/// A curve through the points, and how many coefficients of one coordinate the points decide.
+struct FittedCurve {
+    CubicBSpline curve;
+    double freedom = 0;
+};
+
+/// A break at every point, but for those that crowd; `end` is that of the curve.
+std::vector<double> breaks_at(const CurvePoints& points, double end);
+
 /// Lambdas that leave a curve about one coefficient for every two points.
 std::vector<double> loose_lambda(const CurvePoints& points, const std::vector<double>& breaks);
 

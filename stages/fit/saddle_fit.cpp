@@ -25,7 +25,7 @@ using Values = Eigen::Matrix<double, kQuantities, 1>;
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 11, 1>;
 using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 11, 11>;
 using Jacobian = Eigen::Matrix<double, kQuantities, Eigen::Dynamic, 0, kQuantities, 11>;
-using Nominals = std::array<std::optional<Gaussian>, kQuantities>;
+using Nominals = std::array<std::optional<Measured>, kQuantities>;
 
 const Vector3d* axis_of(const SurfaceFit::Shape& shape) {
     if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
@@ -38,7 +38,8 @@ const Vector3d* axis_of(const SurfaceFit::Shape& shape) {
 /// A branch, its axis out of the header, and a header, as steps from where they were fitted.
 class Pair {
 public:
-    Pair(const SurfaceFit& branch, const SurfaceFit& header) : branch_(branch), header_(header) {
+    Pair(const SurfaceFit& branch, const SurfaceFit& header, const Eigen::MatrixXd& between)
+        : branch_(branch), header_(header), between_(between) {
         const Vector3d out =
             std::visit([&](const auto& s) { return outward_normal(s, branch.origin()); }, header.shape());
         const Vector3d axis = std::get<Cylinder>(branch.shape()).axis;
@@ -62,6 +63,10 @@ public:
         Covariance c = Covariance::Zero(parameters(), parameters());
         c.topLeftCorner(branch_.parameters(), branch_.parameters()) = branch_.covariance();
         c.bottomRightCorner(header_.parameters(), header_.parameters()) = header_.covariance();
+        if (between_.size() > 0) {
+            c.topRightCorner(branch_.parameters(), header_.parameters()) = between_;
+            c.bottomLeftCorner(header_.parameters(), branch_.parameters()) = between_.transpose();
+        }
         return c;
     }
 
@@ -135,6 +140,7 @@ public:
 private:
     const SurfaceFit& branch_;
     const SurfaceFit& header_;
+    const Eigen::MatrixXd& between_;
     double outwards_ = 1, angle_sign_ = 1, offset_sign_ = 1;
     Vector3d side_{0, 0, 0};  ///< to which a branch leans on a plane, or a sphere's centre lies off the axis
 };
@@ -144,10 +150,11 @@ struct Posterior {
     Step step;
     Covariance covariance;
     double chi2 = 0;
+    int nominals = 0;
 };
 
 Posterior update(const Pair& pair, const Nominals& nominals) {
-    Posterior posterior{Step::Zero(pair.parameters()), pair.covariance(), 0};
+    Posterior posterior{Step::Zero(pair.parameters()), pair.covariance(), 0, 0};
     std::array<int, kQuantities> given{};
     Eigen::Index n = 0;
     for (int q = 0; q < kQuantities; ++q) {
@@ -175,7 +182,7 @@ Posterior update(const Pair& pair, const Nominals& nominals) {
         const Eigen::MatrixXd gain = innovation.solve(H * prior).transpose();
         const Step step = gain * off;
         const double moves = (step - posterior.step).norm();
-        posterior = {step, prior - gain * H * prior, off.dot(innovation.solve(off))};
+        posterior = {step, prior - gain * H * prior, off.dot(innovation.solve(off)), static_cast<int>(n)};
         if (moves < 1e-9) {
             break;
         }
@@ -217,12 +224,14 @@ std::optional<std::string> too_wide(const Values& at, const Jacobian& by, const 
 }  // namespace
 
 std::variant<SaddleFit, NoSaddle> fit_saddle(const SurfaceFit& branch, const SurfaceFit& header,
-                                             const SaddleNominals& given) {
+                                             const SaddleNominals& given, const Eigen::MatrixXd& between) {
     const Nominals nominals = checked(given);
     if (!std::holds_alternative<Cylinder>(branch.shape())) {
         return NoSaddle{"the branch is no cylinder"};
     }
-    Pair pair(branch, header);
+    ensure(between.size() == 0 || (between.rows() == branch.parameters() && between.cols() == header.parameters()),
+           "a covariance of the branch's parameters by the header's");
+    Pair pair(branch, header, between);
     if (given.angle_rad) {
         pair.prefer(given.angle_rad->value);
     }
@@ -239,7 +248,7 @@ std::variant<SaddleFit, NoSaddle> fit_saddle(const SurfaceFit& branch, const Sur
     }
     const auto measured = [&](int q) {
         const double variance = (by.row(q) * posterior.covariance * by.row(q).transpose()).value();
-        return Gaussian{q == kOffset ? std::abs(at[q]) : at[q], std::sqrt(std::max(0.0, variance))};
+        return Measured{q == kOffset ? std::abs(at[q]) : at[q], std::sqrt(std::max(0.0, variance))};
     };
     const auto measured_if = [&](int q) { return pair.has(q) ? std::optional(measured(q)) : std::nullopt; };
     const Cylinder wall = pair.branch(posterior.step);
@@ -248,13 +257,14 @@ std::variant<SaddleFit, NoSaddle> fit_saddle(const SurfaceFit& branch, const Sur
     const Vector3d zero = axis_of(shape) != nullptr ? *axis_of(shape) : wall.axis.unitOrthogonal();
     try {
         return SaddleFit{SaddleCurve(wall, zero, base),
-                         base,
+                         shape,
                          across(zero, wall.axis).normalized(),
                          measured(kBranchRadius),
                          measured_if(kHeaderRadius),
                          measured_if(kAngle),
                          measured_if(kOffset),
-                         posterior.chi2};
+                         posterior.chi2,
+                         posterior.nominals};
     } catch (const InputError& e) {
         return NoSaddle{e.what()};
     }

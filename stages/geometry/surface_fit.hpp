@@ -34,6 +34,7 @@ public:
     const Shape& shape() const { return shape_; }
     bool bore() const { return side_ < 0; }
     int parameters() const { return static_cast<int>(covariance_.rows()); }
+    const SurfaceFrame& frame() const { return frame_; }
     const Eigen::Vector3d& origin() const { return frame_.origin; }  ///< centroid of the points
     double distance(const Eigen::Vector3d& p) const;
     Eigen::Vector3d normal(const Eigen::Vector3d& p) const;

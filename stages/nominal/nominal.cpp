@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
-#include "stages/geometry/tridiagonal.hpp"
+#include "stages/geometry/sampled_spline.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -21,97 +20,11 @@ constexpr double kTurn = 2 * std::numbers::pi;
 // A last step shorter than this share of the others is rounding and goes to the one before.
 constexpr double kLastStep = 1e-9;
 
-// The model's spline: knots to begin with, places in each span at which it is compared with the exact curve, and what
-// may be between them. 1e-7 mm is a thousandth of what any program file resolves.
-constexpr std::size_t kFirstKnots = 64, kMostKnots = 200000;
-constexpr int kChecks = 4;
+// What the model's spline may be off: a thousandth of what any program file resolves.
 constexpr double kModelTolerance_mm = 1e-7;
-
-// What coordinates lose to rounding, as a share of the largest: it counts on headers of 10 km and more.
-constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
 // Flank samples a span; they are interpolated linearly in between.
 constexpr int kFlanksPerSpan = 8;
-
-Vector3d exact(const SaddleCurve& curve, double station) {
-    return curve.at(curve.theta(station)).p;
-}
-
-/// The periodic cubic spline through these points at its knots; knots.back() is one period after the first.
-CubicBSpline interpolate(std::vector<double> knots, const std::vector<Vector3d>& points) {
-    const std::size_t n = points.size();
-    // At knot i the control points i, i + 1 and i + 2 count: the middle one is the unknown of row i.
-    std::vector<double> lower(n), diagonal(n), upper(n), right(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const CubicBasis basis = cubic_basis(knots, n, true, knots[i]);
-        lower[i] = basis.value[0];
-        diagonal[i] = basis.value[1];
-        upper[i] = basis.value[2];
-    }
-    CubicBSpline curve;
-    curve.periodic = true;
-    curve.knots = std::move(knots);
-    curve.control.resize(n);
-    for (int axis = 0; axis < 3; ++axis) {
-        std::transform(points.begin(), points.end(), right.begin(), [axis](const Vector3d& p) { return p[axis]; });
-        const std::vector<double> control = solve_cyclic(lower, diagonal, upper, right);
-        for (std::size_t i = 0; i < n; ++i) {
-            curve.control[(i + 1) % n][axis] = control[i];
-        }
-    }
-    return curve;
-}
-
-struct Fitted {
-    CubicBSpline curve;
-    double rms_mm = 0, max_mm = 0;
-};
-
-/// One round: the spline on these knots, and the middles of the spans in which it is off.
-std::pair<Fitted, std::vector<double>> fit_once(const SaddleCurve& saddle, const std::vector<double>& knots) {
-    std::vector<Vector3d> points;
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        points.push_back(exact(saddle, knots[i]));
-    }
-    double extent = 0;
-    for (const Vector3d& p : points) {
-        extent = std::max(extent, p.cwiseAbs().maxCoeff());
-    }
-    const double tolerance = std::max(kModelTolerance_mm, kRounding * extent);
-    Fitted fitted{interpolate(knots, points)};
-    std::vector<double> more;
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        double worst = 0;
-        for (int k = 1; k < kChecks; ++k) {
-            const double station = knots[i] + (knots[i + 1] - knots[i]) * k / kChecks;
-            const double off = (position(fitted.curve, station) - exact(saddle, station)).norm();
-            worst = std::max(worst, off);
-            fitted.rms_mm += off * off;
-        }
-        fitted.max_mm = std::max(fitted.max_mm, worst);
-        if (worst > tolerance) {
-            more.push_back(0.5 * (knots[i] + knots[i + 1]));
-        }
-    }
-    fitted.rms_mm = std::sqrt(fitted.rms_mm / static_cast<double>((knots.size() - 1) * (kChecks - 1)));
-    return {std::move(fitted), std::move(more)};
-}
-
-Fitted fit_exactly(const SaddleCurve& saddle) {
-    std::vector<double> knots;
-    for (std::size_t i = 0; i <= kFirstKnots; ++i) {
-        knots.push_back(saddle.length() * static_cast<double>(i) / kFirstKnots);
-    }
-    while (true) {
-        auto [fitted, more] = fit_once(saddle, knots);
-        if (more.empty()) {
-            return std::move(fitted);
-        }
-        knots.insert(knots.end(), more.begin(), more.end());
-        std::sort(knots.begin(), knots.end());
-        ensure(knots.size() < kMostKnots, "a saddle without corners needs few knots");
-    }
-}
 
 }  // namespace
 
@@ -179,10 +92,13 @@ double torch_angle(const SaddlePoint& point, PoseLaw law, double initial) {
 }
 
 SeamModel nominal_model(const SaddleCurve& curve, PoseLaw law, double initial) {
-    Fitted fitted = fit_exactly(curve);
+    SampledSpline fitted = spline_through([&](double station) { return curve.at(curve.theta(station)).p; },
+                                          curve.length(), true, kModelTolerance_mm);
     SeamModel model;
     model.kind = JointKind::saddle;
     model.closed = true;
+    model.model = "saddle";
+    model.reason = "computed from nominal dimensions";
     model.residual_rms_mm = fitted.rms_mm;
     model.residual_max_mm = fitted.max_mm;
     model.degrees_of_freedom = 3 * static_cast<double>(fitted.curve.control.size());

@@ -55,7 +55,7 @@ TEST(PlateJoints, CoursesHaveTheLengthAndEndsThatGeometryGives) {
 TEST(PlateJoints, SeamsAreOfTheirKind) {
     const std::pair<SceneKind, JointKind> kinds[]{{SceneKind::tee, JointKind::fillet},
                                                   {SceneKind::box_on_plate, JointKind::fillet},
-                                                  {SceneKind::pipe_on_plate, JointKind::fillet},
+                                                  {SceneKind::pipe_on_plate, JointKind::saddle},
                                                   {SceneKind::pipe_on_pipe, JointKind::saddle},
                                                   {SceneKind::lap, JointKind::lap},
                                                   {SceneKind::butt, JointKind::butt},
@@ -73,7 +73,7 @@ TEST(PlateJoints, SeamsAreOfTheirKind) {
         kinds_of_multi.push_back(seam.kind);
     }
     EXPECT_THAT(kinds_of_multi, testing::ElementsAre(JointKind::lap, JointKind::fillet, JointKind::fillet,
-                                                     JointKind::fillet, JointKind::corner));
+                                                     JointKind::saddle, JointKind::corner));
 }
 
 TEST(PlateJoints, UsualSizesAreThoseOfTheTrade) {

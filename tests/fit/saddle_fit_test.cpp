@@ -113,7 +113,7 @@ TEST(SaddleFit, PointsTheBranchOutOfTheHeader) {
 /// Counts how often numbers are within one and two of their own sigmas.
 struct Tally {
     int one = 0, two = 0, all = 0;
-    void add(const Gaussian& g, double truth) {
+    void add(const Measured& g, double truth) {
         one += std::abs(g.value - truth) < g.sigma;
         two += std::abs(g.value - truth) < 2 * g.sigma;
         ++all;
@@ -261,7 +261,7 @@ TEST(SaddleFit, RefusesABranchThatIsNone) {
 }
 
 TEST(SaddleFit, RefusesNominalsThatSayNothing) {
-    for (const Gaussian& wrong : {Gaussian{80, 0}, Gaussian{80, -1}, Gaussian{std::nan(""), 1}}) {
+    for (const Measured& wrong : {Measured{80, 0}, Measured{80, -1}, Measured{std::nan(""), 1}}) {
         SaddleNominals nominals;
         nominals.branch_radius_mm = wrong;
         EXPECT_THROW(fitted(kOnPipe, {}, 1, nominals), InputError);
@@ -270,10 +270,13 @@ TEST(SaddleFit, RefusesNominalsThatSayNothing) {
 
 TEST(SaddleSeam, IsTheCurveOrAStretchOfIt) {
     const auto fit = std::get<SaddleFit>(fitted(kOnPipe, {}, 1));
-    const SaddleSeam round(fit.curve), stretch(fit.curve, 1.5, 7);
-    EXPECT_TRUE(round.closed());
-    EXPECT_FALSE(stretch.closed());
-    EXPECT_DOUBLE_EQ(round.length(), fit.curve.length());
+    const SaddleSeam round(fit.curve, 0, kTurn), stretch(fit.curve, 1.5, 7), back(fit.curve, 7, 1.5);
+    EXPECT_NEAR(round.length(), fit.curve.length(), 1e-12);
+    EXPECT_EQ(back.length(), stretch.length());
+    for (const double s : {0.0, 3.0, 100.0}) {
+        EXPECT_LT((back.at(s).p - stretch.at(stretch.length() - s).p).norm(), 1e-9);
+        EXPECT_NEAR(back.station(back.at(s).theta), s, 1e-9);
+    }
     EXPECT_NEAR(stretch.length(), fit.curve.station(7) - fit.curve.station(1.5), 1e-12);
     EXPECT_LT((stretch.at(0).p - fit.curve.at(1.5).p).norm(), 1e-9);
     EXPECT_LT((stretch.at(stretch.length()).p - fit.curve.at(7).p).norm(), 1e-9);

@@ -163,8 +163,8 @@ std::string scanned_section() {
            wins(seams, "parametric (exact)", "parametric (chord)") +
            " seams, and Akima's line nearer than the parametric spline over chord length on " +
            wins(seams, "akima", "parametric (chord)") +
-           ". The spline through all points is what `fit.model` is by default: it averages the noise that an "
-           "interpolating line passes on.\n\n" +
+           ". The spline through all points is what `fit.model` takes by default where a seam goes round no pipe: it "
+           "averages the noise that an interpolating line passes on.\n\n" +
            best_table(seams);
 }
 

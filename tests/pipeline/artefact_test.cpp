@@ -36,11 +36,30 @@ void expect_round_trip(const T& value) {
     EXPECT_EQ(encode(back), text);
 }
 
+FlankSurface random_surface(Numbers& n) {
+    return {static_cast<SurfaceShape>(n.below(4)),
+            n.vector(),
+            n.vector(),
+            n.any(),
+            n.flip(),
+            n.flip(),
+            n.any(),
+            n.any(),
+            n.vector(),
+            n.vector(),
+            n.vector(),
+            n.any(),
+            {n.any(), n.any()}};
+}
+
 Extraction random_extraction(Numbers& n) {
     Extraction e;
     e.seams.resize(n.below(4));
     for (auto& seam : e.seams) {
-        seam = {static_cast<JointKind>(n.below(6)), n.flip(), n.any(), "two surfaces\n", {}, {}};
+        seam = {static_cast<JointKind>(n.below(6)), n.flip(), n.any(), "two surfaces\n", {}, {}, {}};
+        if (n.flip()) {
+            seam.surfaces = {random_surface(n), random_surface(n), {n.any(), n.any(), n.any()}};
+        }
         for (std::size_t i = 0; i < 20; ++i) {
             seam.points.push_back({n.vector(), n.vector(), n.vector(), n.any(), n.flip()});
             const auto measured = [&] { return Measured{n.any(), n.any()}; };
@@ -65,6 +84,12 @@ SeamModel random_model(Numbers& n) {
     model.residual_rms_mm = n.any();
     model.residual_max_mm = n.any();
     model.degrees_of_freedom = n.any();
+    model.model = "saddle";
+    model.reason = "both pipes are \"round\"";
+    if (n.flip()) {
+        const Measured estimate{n.any(), n.any()};
+        model.saddle = {static_cast<SurfaceShape>(n.below(4)), estimate, {}, Measured{n.any(), n.any()}, estimate};
+    }
     return model;
 }
 

@@ -1,4 +1,4 @@
-#include "stages/fit/pieces.hpp"
+#include "stages/geometry/pieces.hpp"
 
 #include <cstddef>
 
