@@ -77,6 +77,11 @@ void add_seam(PartResult& part, bool closed, CurvePoint (*curve)(double), double
     model.residual_rms_mm = 0.008;
     model.residual_max_mm = 0.021;
     model.degrees_of_freedom = 3.0 * static_cast<double>(spline.control.size());
+    model.model = closed ? "saddle" : "spline";
+    model.reason = closed ? "the pipe is round" : "no saddle: neither flank is a cylinder";
+    if (closed) {
+        model.saddle = SaddleParameters{SurfaceShape::plane, {kRadius, 0.004}, {}, Measured{kPi / 2, 0.0002}, {}};
+    }
     Nodes nodes;
     nodes.max_chord_error_mm = 0.046;
     for (int i = 0; i < points; ++i) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/report.hpp"
+#include "pipeline/tables.hpp"
 #include "stages/error.hpp"
 #include "tests/report/example_part.hpp"
 
@@ -62,6 +63,27 @@ TEST(ReportJson, EveryRowHasNameValueUnitAndVerdictAndNamesThatEndInTheUnit) {
         }
     }
     EXPECT_GT(with_unit, 40U);
+}
+
+TEST(ReportJson, SaysWhichModelASeamIsAndWhy) {
+    const Json report = report_of_example();
+    const Json& pipe = report.at("seams")[0].at("rows");
+    EXPECT_EQ(find(pipe, "model").at("value"), "saddle");
+    EXPECT_EQ(find(pipe, "model_reason").at("value"), "the pipe is round");
+    EXPECT_EQ(find(pipe, "header").at("value"), "plane");
+    EXPECT_EQ(find(pipe, "branch_radius_mm").at("value"), 30);
+    EXPECT_EQ(find(pipe, "branch_radius_sigma_mm").at("value"), 0.004);
+    EXPECT_NEAR(find(pipe, "branch_angle_deg").at("value").get<double>(), 90, 1e-12);
+    EXPECT_NEAR(find(pipe, "branch_angle_sigma_deg").at("value").get<double>(), 0.0115, 1e-4);
+    const Json& rib = report.at("seams")[1].at("rows");
+    EXPECT_EQ(find(rib, "model").at("value"), "spline");
+    for (const Json& row : rib) {
+        EXPECT_NE(row.at("name"), "branch_radius_mm");
+    }
+    const Json seams = Json::parse(seams_json(example_part())).at("seams");
+    EXPECT_EQ(seams[0].at("model").at("saddle").at("branch_radius_mm"), 30);
+    EXPECT_EQ(seams[0].at("model").at("reason"), "the pipe is round");
+    EXPECT_TRUE(seams[1].at("model").at("saddle").is_null());
 }
 
 TEST(ReportJson, TakesItsNumbersFromTheResultUnrounded) {
