@@ -10,6 +10,7 @@
 #include "stages/extract/around.hpp"
 #include "stages/extract/creases.hpp"
 #include "stages/extract/folds.hpp"
+#include "stages/extract/grooves.hpp"
 #include "stages/extract/slanted.hpp"
 #include "stages/extract/surfels.hpp"
 #include "stages/geometry/bulk.hpp"
@@ -65,6 +66,12 @@ void take(Extraction& result, std::vector<Seam> seams, std::vector<std::string> 
     std::move(remarks.begin(), remarks.end(), std::back_inserter(result.remarks));
 }
 
+// Without the creases that a joint has claimed.
+void leave_out(std::vector<Crease>& creases, const std::vector<char>& claimed) {
+    std::size_t i = 0;
+    std::erase_if(creases, [&](const Crease&) { return claimed[i++] != 0; });
+}
+
 }  // namespace
 
 Fields describe(ExtractOptions& o) {
@@ -80,10 +87,10 @@ Fields describe(ExtractOptions& o) {
 
 Extraction extract(const Scan& scan, const ExtractOptions& options) {
     if (options.joint != JointChoice::automatic && options.joint != JointChoice::fillet &&
-        options.joint != JointChoice::corner) {
-        throw InputError("extract: joint kind '" +
-                         std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
-                         "' is not followed yet; fillet and corner are; set extract.joint to auto, fillet or corner");
+        options.joint != JointChoice::corner && options.joint != JointChoice::v_groove) {
+        throw InputError(
+            "extract: joint kind '" + std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
+            "' is not followed yet; fillet, v-groove and corner are; set extract.joint to auto or one of these");
     }
     if (scan.points.size() < kLeastPoints) {
         throw InputError("extract: the scan has " + std::to_string(scan.points.size()) + " points; at least " +
@@ -112,8 +119,14 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
                             options.station_mm > 0 ? options.station_mm : station_distance(scale, scan.points.size())};
     const Around around{scan, grid, field, surfels, creases, following};
 
+    if (asked(options, JointChoice::v_groove)) {
+        Grooves grooves = find_grooves(around, options.min_length_mm);
+        result.registration_mm = grooves.registration_mm;
+        leave_out(creases, grooves.claimed);
+        take(result, std::move(grooves.seams), std::move(grooves.remarks));
+    }
     Folds folds = find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options);
-    result.registration_mm = folds.registration_mm;
+    result.registration_mm = std::max(result.registration_mm, folds.registration_mm);
     take(result, std::move(folds.seams), std::move(folds.remarks));
     if (asked(options, JointChoice::fillet)) {
         take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});

@@ -1,0 +1,256 @@
+#include "stages/extract/grooves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "stages/extract/groove_way.hpp"
+#include "stages/extract/registration.hpp"
+#include "stages/text.hpp"
+
+namespace seampath::detail {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kLeastLength = 20;               // of a groove, in point distances
+const double kLevel = std::cos(15 * kDegree);     // of the two tops against each other
+const double kParallel = std::cos(15 * kDegree);  // of the two top edges
+const double kSquare = std::sin(8 * kDegree);
+constexpr double kWidest = 60;     // mm, between the top edges
+constexpr double kMostStep = 0.5;  // of the tops, in widths
+
+/// A convex crease read as the top edge of a bevel.
+struct Edge {
+    std::size_t crease;
+    Vector3d p, t, top, bevel;
+};
+
+std::vector<Edge> edges_of(const std::vector<Crease>& creases) {
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < creases.size(); ++i) {
+        const Crease& c = creases[i];
+        if (!c.concave) {
+            edges.push_back({i, c.p, c.t, c.n1, c.n2});
+            edges.push_back({i, c.p, c.t, c.n2, c.n1});
+        }
+    }
+    return edges;
+}
+
+// Whether b is the other side of a groove of which a is one; its width.
+std::optional<double> faces(const Edge& a, const Edge& b, double reach) {
+    if (a.crease == b.crease || a.top.dot(b.top) < kLevel || std::abs(a.t.dot(b.t)) < kParallel) {
+        return std::nullopt;
+    }
+    const Vector3d d = b.p - a.p;
+    const double along = d.dot(a.t), step = d.dot(a.top);
+    const Vector3d across = d - along * a.t - step * a.top;
+    const double width = across.norm();
+    if (std::abs(along) > reach || width < 0.5 * reach || width > kWidest || std::abs(step) > kMostStep * width) {
+        return std::nullopt;
+    }
+    const Vector3d x = across / width;
+    const bool facing = a.bevel.dot(x) > 0.3 && b.bevel.dot(x) < -0.3;
+    const bool bevelled = std::max(a.bevel.dot(a.top), b.bevel.dot(b.top)) > kSquare;
+    const bool open = std::min(a.bevel.dot(a.top), b.bevel.dot(b.top)) > -kSquare;
+    return facing && bevelled && open ? std::optional(width) : std::nullopt;
+}
+
+// a on the right of travel.
+GrooveSeed seed_of(const Edge& a, const Edge& b, double down) {
+    GrooveSeed seed;
+    const Vector3d up = (a.top + b.top).normalized();
+    Vector3d left = b.p - a.p;
+    left -= left.dot(a.t) * a.t + left.dot(up) * up;
+    left.normalize();
+    seed.frame.t = left.cross(up).normalized();
+    seed.frame.up = (up - up.dot(seed.frame.t) * seed.frame.t).normalized();
+    seed.frame.p = 0.5 * (a.p + b.p);
+    const auto in_section = [&](const Vector3d& v) { return Vector2d(v.dot(seed.frame.left()), v.dot(seed.frame.up)); };
+    int k = 0;
+    for (const Edge* e : {&a, &b}) {
+        const auto side = static_cast<std::size_t>(k);
+        const Vector2d n = in_section(e->bevel).normalized(), top = in_section(e->top).normalized();
+        const Vector2d downwards = k == 0 ? Vector2d(n[1], -n[0]) : Vector2d(-n[1], n[0]);
+        seed.shape.corner[side] = in_section(e->p - seed.frame.p);
+        seed.shape.end[side] = seed.shape.corner[side] + down * downwards;
+        seed.shape.out[side] = k == 0 ? Vector2d(-top[1], top[0]) : Vector2d(top[1], -top[0]);
+        ++k;
+    }
+    return seed;
+}
+
+double length_of(const GrooveWay& way) {
+    double length = 0;
+    for (std::size_t i = 1; i < way.places.size(); ++i) {
+        const GroovePlace &a = way.places[i - 1], &b = way.places[i];
+        length += (b.frame.at(b.numbers.root()) - a.frame.at(a.numbers.root())).norm();
+    }
+    return length;
+}
+
+// Whether a place lies inside the groove or on its edges.
+bool within(const GrooveWay& way, const Vector3d& p, double reach) {
+    for (const GroovePlace& place : way.places) {
+        const Vector3d v = p - place.frame.p;
+        if (std::abs(v.dot(place.frame.t)) > 3 * reach) {
+            continue;
+        }
+        const GrooveShape& shape = place.fit.shape;
+        const Vector2d x(v.dot(place.frame.left()), v.dot(place.frame.up));
+        const double low = std::min(shape.end[0][1], shape.end[1][1]),
+                     high = std::max(shape.corner[0][1], shape.corner[1][1]);
+        if (x[0] > shape.corner[0][0] - reach && x[0] < shape.corner[1][0] + reach && x[1] > low - 3 * reach &&
+            x[1] < high + reach) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// What registration.hpp wants to know of the faces: their points off them, by view.
+void add_differences(ViewDifferences& sum, const Around& around, const GrooveWay& way) {
+    for (const auto part : {&GrooveFit::bevel, &GrooveFit::top}) {
+        std::vector<TrackPoint> points;
+        for (const GroovePlace& place : way.places) {
+            const GrooveFit& fit = place.fit;
+            const double half = 0.5 * around.following.step, gate = 4 * around.field.at(place.frame.p).noise;
+            GrooveBox box{fit.shape.end[0], fit.shape.end[0]};
+            for (std::size_t k = 0; k < 2; ++k) {
+                for (const Vector2d& x : {fit.shape.end[k], Vector2d(fit.shape.corner[k] + 10 * fit.shape.out[k])}) {
+                    box.low = box.low.cwiseMin(x);
+                    box.high = box.high.cwiseMax(x);
+                }
+            }
+            box.low.array() -= gate;
+            box.high.array() += gate;
+            TrackPoint& point = points.emplace_back();
+            for (const GroovePoint& q :
+                 groove_points(around.grid, around.following.view_starts, place.frame, -half, half, box)) {
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const GrooveFace& face = (fit.*part)[k];
+                    const double u = face.along(q.section()), off = face.off(q.section());
+                    const double corner = face.along(fit.shape.corner[k]);
+                    const bool on = part == &GrooveFit::bevel ? u < corner - gate : u > corner + gate;
+                    if (on && std::abs(off) < gate) {
+                        point.slab[k].push_back(
+                            {Eigen::Vector3f::Zero(), static_cast<float>(u), static_cast<float>(off), q.view});
+                    }
+                }
+            }
+        }
+        detail::add_differences(sum, points);
+    }
+}
+
+std::string reason(const GrooveWay& way, const Seam& seam) {
+    const auto median = [&](auto&& number) {
+        std::vector<double> values;
+        for (const GrooveStation& s : seam.groove) {
+            values.push_back(number(s));
+        }
+        return quantile(values, 0.5);
+    };
+    std::string text = way.root.square ? "a bevel of " : "two bevels that make ";
+    text += fixed(median([](const GrooveStation& s) { return s.included_angle_rad.value; }) / kDegree, 1) + " deg" +
+            (way.root.square ? " faces a square edge" : " face each other") + " between level tops, " +
+            fixed(median([](const GrooveStation& s) { return s.depth_mm.value; }), 2) + " mm deep, ";
+    return text + (way.root.closed
+                       ? "and meet at the root"
+                       : "and end " + fixed(median([](const GrooveStation& s) { return s.gap_mm.value; }), 2) +
+                             " mm apart at the root");
+}
+
+Seam seam_of(const GrooveWay& way, const Vector3d& origin, double registration) {
+    Seam seam;
+    seam.kind = JointKind::v_groove;
+    seam.closed = way.closed;
+    for (const GroovePlace& place : way.places) {
+        const GrooveFrame& frame = place.frame;
+        SeamPoint point;
+        point.p = origin + frame.at(place.numbers.root());
+        Vector3d* normal[2] = {&point.n1, &point.n2};
+        for (std::size_t k = 0; k < 2; ++k) {
+            *normal[k] =
+                (frame.direction(place.numbers.normal[k]) - place.fit.bevel[k].slope_along * frame.t).normalized();
+        }
+        point.sigma_mm = place.numbers.sigma(registration);
+        seam.points.push_back(point);
+        seam.groove.push_back(station_of(place.numbers, registration));
+    }
+    seam.confidence = 1;
+    seam.kind_reason = reason(way, seam);
+    return seam;
+}
+
+}  // namespace
+
+Grooves find_grooves(const Around& around, double min_length_mm) {
+    const Tracker& following = around.following;
+    Grooves result;
+    result.claimed.assign(around.creases.size(), 0);
+    std::vector<Edge> edges = edges_of(around.creases);
+    std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
+        return around.creases[a.crease].weight > around.creases[b.crease].weight;
+    });
+    std::vector<char> tried(around.creases.size(), 0);
+    std::vector<GrooveWay> ways;
+    const double reach = around.surfels.radius;
+    for (const Edge& a : edges) {
+        if (tried[a.crease]) {
+            continue;
+        }
+        std::optional<double> nearest;
+        const Edge* partner = nullptr;
+        for (const Edge& b : edges) {
+            const auto width = tried[b.crease] ? std::nullopt : faces(a, b, 0.5 * reach);
+            if (width && (!nearest || *width < *nearest)) {
+                nearest = width;
+                partner = &b;
+            }
+        }
+        if (!partner) {
+            continue;
+        }
+        auto way = follow_groove(following, seed_of(a, *partner, reach));
+        if (way) {
+            way = measure_groove(following, *way);
+        }
+        if (!way) {
+            tried[a.crease] = 1;
+            continue;
+        }
+        for (std::size_t i = 0; i < around.creases.size(); ++i) {
+            tried[i] = tried[i] || within(*way, around.creases[i].p, 0.5 * reach);
+        }
+        tried[a.crease] = 1;
+        const double length = length_of(*way);
+        const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * around.field.overall.spacing;
+        if (length < least) {
+            result.remarks.push_back("a groove of " + fixed(length, 1) + " mm was left out: shorter than " +
+                                     fixed(least, 1) + " mm");
+            continue;
+        }
+        for (std::size_t i = 0; i < around.creases.size(); ++i) {
+            result.claimed[i] = result.claimed[i] || within(*way, around.creases[i].p, 0.5 * reach);
+        }
+        ways.push_back(std::move(*way));
+    }
+    ViewDifferences differences;
+    for (const GrooveWay& way : ways) {
+        add_differences(differences, around, way);
+    }
+    result.registration_mm = registration_of(differences);
+    const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1);
+    for (const GrooveWay& way : ways) {
+        result.seams.push_back(seam_of(way, around.scan.origin_mm, result.registration_mm * (1 + 0.6 / freedom)));
+    }
+    return result;
+}
+
+}  // namespace seampath::detail

@@ -1,0 +1,300 @@
+#include "stages/geometry/groove_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace seampath {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kGate = 4;           // noises
+constexpr double kMostPoints = 1200;  // of a face: more add time and, their noise being shared, nothing to the fit
+constexpr double kRoughly = 300;      // of them tell where to look
+constexpr std::size_t kFewest = 30;
+constexpr double kDeepest = 80;  // mm along a bevel
+
+Vector2d normal_of(const Vector2d& d, int side) {
+    return side == 0 ? Vector2d(d[1], -d[0]) : Vector2d(-d[1], d[0]);
+}
+
+GrooveFace line(const Vector2d& o, const Vector2d& d, int side) {
+    GrooveFace face;
+    face.o = o;
+    face.d = d;
+    face.n = normal_of(d, side);
+    return face;
+}
+
+/// Which points are a face's: u from low to high, and within the gate, which opens by `wedge` per mm from `u0`.
+struct Gate {
+    double low, high, width, wedge = 0, u0 = 0;
+    bool holds(double u, double off) const {
+        return u >= low && u <= high && std::abs(off) <= width + wedge * std::abs(u - u0);
+    }
+};
+
+struct FacePoint {
+    double u, s, z;
+    std::uint32_t view;
+};
+
+// `own` says of a point (a, h) whether it can be this face's at all.
+template <class Own>
+std::vector<FacePoint> points_of(std::span<const GroovePoint> points, const GrooveFace& face, const Gate& gate,
+                                 Own&& own) {
+    std::vector<FacePoint> taken;
+    for (const GroovePoint& q : points) {
+        const Vector2d x = q.section();
+        const double u = face.along(x);
+        if (gate.holds(u, face.off(x)) && own(x)) {
+            taken.push_back({u, q.s, face.n.dot(x - face.o), q.view});
+        }
+    }
+    return taken;
+}
+
+bool fit(GrooveFace& face, const std::vector<FacePoint>& points, double along, double most, const ScanScale& scale) {
+    if (points.size() < kFewest) {
+        return false;
+    }
+    double length = 0;
+    for (const FacePoint& x : points) {
+        length = std::max(length, std::abs(x.u));
+    }
+    const auto stride = 1 + static_cast<std::size_t>(static_cast<double>(points.size()) / most);
+    QuadraticFit quadric;
+    quadric.begin(points.size() / stride + 1, length, along);
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+        quadric.add(points[i].u / length, points[i].s / along, points[i].z);
+    }
+    if (!quadric.solve(0.3 * scale.noise)) {
+        return false;
+    }
+    const double unit = quadric.scale() * std::sqrt(1 + (scale.correlation - 1) / static_cast<double>(stride));
+    quadric.shrink(unit);
+    const auto& c = quadric.coefficients();
+    const QuadraticFit::Normal cofactors = quadric.cofactors();
+    constexpr int kOfSection[3] = {0, 1, 3};
+    Eigen::Matrix<double, 3, 6> pick = Eigen::Matrix<double, 3, 6>::Zero();
+    for (int i = 0; i < 3; ++i) {
+        pick(i, kOfSection[i]) = 1;
+    }
+    face.length = length;
+    face.c = pick * c;
+    face.covariance = unit * unit * pick * cofactors * pick.transpose();
+    face.slope_along = c[2] / along;
+    face.scale = quadric.scale();
+    face.shift.clear();
+    for (std::size_t i = 0; i < quadric.size(); ++i) {
+        const std::uint32_t view = points[i * stride].view;
+        if (view >= face.shift.size()) {
+            face.shift.resize(view + 1, Eigen::Vector3d::Zero());
+        }
+        face.shift[view] += quadric.weight(i) * pick * cofactors * QuadraticFit::row(quadric.u(i), quadric.s(i));
+    }
+    return true;
+}
+
+double cross(const Vector2d& a, const Vector2d& b) {
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+// Along the first face, where its line runs into the second's; straight lines through the faces' own origins.
+double crossing(const GrooveFace& a, const GrooveFace& b) {
+    const Vector2d da = a.tangent(0), db = b.tangent(0), oa = a.at(0);
+    const double sine = cross(da, db);
+    return std::abs(sine) < 1e-6 ? -1e9 : cross(b.at(0) - oa, db) / sine;
+}
+
+// Of what views see of one end, the mean of those that see as far as the one that sees furthest, weighted by how sure
+// they are; `share` of each view in it. Empty when none sees it.
+std::optional<DensityEdge> furthest(const std::vector<std::optional<DensityEdge>>& seen, std::vector<double>& share) {
+    constexpr double kAsFar = 2.5;   // sigmas
+    constexpr double kLeast = 0.08;  // of the densest view's density
+    share.assign(seen.size(), 0);
+    const DensityEdge* first = nullptr;
+    double densest = 0;
+    for (const auto& edge : seen) {
+        densest = std::max(densest, edge ? edge->density : 0);
+    }
+    for (const auto& edge : seen) {
+        if (edge && edge->density > kLeast * densest && (!first || edge->at - edge->sigma > first->at - first->sigma)) {
+            first = &*edge;
+        }
+    }
+    if (!first) {
+        return std::nullopt;
+    }
+    DensityEdge mean{0, 0, 0, 0};
+    double weights = 0;
+    for (std::size_t v = 0; v < seen.size(); ++v) {
+        if (seen[v] && seen[v]->density > kLeast * densest &&
+            first->at - seen[v]->at < kAsFar * std::hypot(first->sigma, seen[v]->sigma)) {
+            share[v] = 1 / (seen[v]->sigma * seen[v]->sigma);
+            weights += share[v];
+            mean.at += share[v] * seen[v]->at;
+            mean.blur += share[v] * seen[v]->blur;
+            mean.density += seen[v]->density;
+        }
+    }
+    for (double& x : share) {
+        x /= weights;
+    }
+    mean.at /= weights;
+    mean.blur /= weights;
+    mean.sigma = 1 / std::sqrt(weights);
+    return mean;
+}
+
+/// A section in the making.
+struct Work {
+    std::span<const GroovePoint> points;
+    ScanScale scale;
+    GrooveWindow window;
+    GrooveFit fit;
+    double most = kMostPoints;
+
+    double along() const { return std::max(window.back, window.ahead); }
+    double gate_width() const { return kGate * scale.noise; }
+
+    // Nearer to this side's bevel than to the other's.
+    auto own(int k) const {
+        return
+            [this, k](const Vector2d& x) { return std::abs(fit.bevel[k].off(x)) <= std::abs(fit.bevel[1 - k].off(x)); };
+    }
+
+    // The bevel's points near its corner; `reach` of it.
+    bool fit_bevel(int k, double low, double high, double wedge) {
+        GrooveFace& face = fit.bevel[static_cast<std::size_t>(k)];
+        const double corner = face.along(fit.shape.corner[static_cast<std::size_t>(k)]);
+        const Gate gate{low, high, gate_width() + (wedge > 0 ? scale.spacing : 0), wedge, corner};
+        return seampath::fit(face, points_of(points, face, gate, own(k)), along(), most, scale);
+    }
+
+    bool fit_top(int k, double wedge) {
+        GrooveFace& face = fit.top[static_cast<std::size_t>(k)];
+        const double corner = face.along(fit.shape.corner[static_cast<std::size_t>(k)]);
+        const Gate gate{corner + window.band, corner + window.away, gate_width() + (wedge > 0 ? scale.spacing : 0),
+                        wedge, 0};
+        return seampath::fit(face, points_of(points, face, gate, [](const Vector2d&) { return true; }), along(), most,
+                             scale);
+    }
+
+    // Along -d, so that the bevel's points lie before their end; view by view: a view may be shadowed where another
+    // sees on.
+    std::optional<DensityEdge> find_end(int k, double from) {
+        const auto side = static_cast<std::size_t>(k);
+        const GrooveFace& face = fit.bevel[side];
+        const Gate gate{-kDeepest, face.along(fit.shape.corner[side]), gate_width(), 0.02, from};
+        std::vector<std::vector<double>> x;
+        for (const FacePoint& q : points_of(points, face, gate, own(k))) {
+            x.resize(std::max<std::size_t>(x.size(), q.view + 1));
+            x[q.view].push_back(-q.u);
+        }
+        std::vector<std::optional<DensityEdge>> seen;
+        for (auto& of_view : x) {
+            seen.push_back(density_edge(std::move(of_view), -from, scale.spacing, scale.noise));
+        }
+        return furthest(seen, fit.end_shift[side]);
+    }
+
+    void set_corners() {
+        for (std::size_t k = 0; k < 2; ++k) {
+            fit.shape.corner[k] = fit.bevel[k].at(crossing(fit.bevel[k], fit.top[k]));
+            fit.shape.out[k] = fit.top[k].tangent(0);
+        }
+    }
+};
+
+}  // namespace
+
+Vector2d GrooveFace::at(double u) const {
+    const double x = u / length;
+    return o + u * d + (c[0] + c[1] * x + c[2] * x * x) * n;
+}
+
+Vector2d GrooveFace::tangent(double u) const {
+    return (d + (c[1] + 2 * c[2] * u / length) / length * n).normalized();
+}
+
+double GrooveFace::off(const Vector2d& x) const {
+    const double u = along(x) / length;
+    return n.dot(x - o) - (c[0] + c[1] * u + c[2] * u * u);
+}
+
+std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::size_t> view_starts,
+                                    const ScanScale& scale, const GrooveFrame& frame, const GrooveShape& guess,
+                                    const GrooveWindow& window, int rounds) {
+    constexpr double kWedge = 0.12;  // slope by which the guess may be off
+    GrooveBox box{guess.corner[0], guess.corner[0]};
+    const double width = (guess.corner[0] - guess.corner[1]).norm();
+    const Vector2d d0 = (guess.end[0] - guess.corner[0]).normalized(),
+                   d1 = (guess.end[1] - guess.corner[1]).normalized();
+    const double runs =
+        std::abs(cross(d0, d1)) < 0.1 ? 0 : cross(guess.corner[1] - guess.corner[0], d1) / cross(d0, d1);
+    const double deep = runs > 0 ? std::min(kDeepest, 1.3 * runs + 3) : std::min(kDeepest, 3 * width + 10);
+    for (int k = 0; k < 2; ++k) {
+        const auto side = static_cast<std::size_t>(k);
+        for (const Vector2d& x :
+             {guess.corner[side], guess.end[side], Vector2d(guess.corner[side] + window.away * guess.out[side])}) {
+            box.low = box.low.cwiseMin(x);
+            box.high = box.high.cwiseMax(x);
+        }
+    }
+    box.low = (box.low - Vector2d(2, 2)).cwiseMin(guess.corner[0] - Vector2d(0, deep));
+    box.high += Vector2d(2, 2);
+    const auto points = groove_points(grid, view_starts, frame, -window.back, window.ahead, box);
+    Work work{points, scale, window, {}};
+    GrooveFit& fit = work.fit;
+    fit.shape = guess;
+    for (int k = 0; k < 2; ++k) {
+        const auto side = static_cast<std::size_t>(k);
+        const Vector2d d = (guess.corner[side] - guess.end[side]).normalized();
+        fit.bevel[side] = line(guess.end[side], d, k);
+        fit.top[side] = line(guess.corner[side], guess.out[side], k);
+    }
+    for (int round = 0; round < rounds; ++round) {
+        const double wedge = round == 0 ? kWedge : 0;
+        work.most = round + 1 < rounds ? kRoughly : kMostPoints;
+        std::array<double, 2> low{0, 0}, high{0, 0};
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double from = round == 0 ? 0 : fit.end[k]->at, to = fit.bevel[k].along(fit.shape.corner[k]);
+            low[k] = from + (round == 0 ? 0 : std::min(0.5 * window.band, 0.2 * (to - from)));
+            high[k] = to - std::min(window.band, 0.3 * (to - from));
+        }
+        for (int k = 0; k < 2; ++k) {
+            const auto side = static_cast<std::size_t>(k);
+            if (!work.fit_top(k, wedge) || !work.fit_bevel(k, low[side], high[side], wedge)) {
+                return std::nullopt;
+            }
+        }
+        work.set_corners();
+        for (int k = 0; k < 2; ++k) {
+            const auto side = static_cast<std::size_t>(k);
+            const double corner = fit.bevel[side].along(fit.shape.corner[side]);
+            fit.end[side] = work.find_end(k, corner - 0.6 * (corner - low[side]));
+            if (!fit.end[side]) {
+                return std::nullopt;
+            }
+            fit.end[side]->at = -fit.end[side]->at;
+            fit.shape.end[side] = fit.bevel[side].at(fit.end[side]->at);
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double length = (fit.shape.corner[k] - fit.shape.end[k]).norm();
+        const double half = std::min({window.back, window.ahead, std::max(2.5 * scale.spacing, work.along() / 8)});
+        const Gate gate{fit.end[k]->at, fit.end[k]->at + length, work.gate_width()};
+        double count = 0;
+        for (const GroovePoint& q : points) {
+            count +=
+                std::abs(q.s) <= half && gate.holds(fit.bevel[k].along(q.section()), fit.bevel[k].off(q.section()));
+        }
+        fit.density[k] = count / (2 * half * std::max(length, scale.spacing));
+    }
+    return fit;
+}
+
+}  // namespace seampath

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stages/geometry/density_edge.hpp"
+#include "stages/geometry/groove_points.hpp"
+#include "stages/geometry/robust.hpp"
+#include "stages/geometry/scale.hpp"
+#include "stages/types.hpp"
+
+/// The measurement of a groove at one place: the tops and bevels of both plates are fitted as lines or arcs of the
+/// section, corners being left out, and intersected; a bevel's lower end is where its points end. Side 0 is the plate
+/// on the right of travel, with the seam's first flank, side 1 the one on the left.
+namespace seampath {
+
+/// Where the faces of a section are, well enough to find their points.
+struct GrooveShape {
+    std::array<Eigen::Vector2d, 2> corner;  ///< top edges, (a, h), mm
+    std::array<Eigen::Vector2d, 2> end;     ///< a place on each bevel; its lower end where that is known
+    std::array<Eigen::Vector2d, 2> out;     ///< unit, along each top away from the groove
+};
+
+struct GrooveWindow {
+    double back = 0;  ///< mm along the groove, from the place
+    double ahead = 0;
+    double away = 0;  ///< mm, along the tops
+    double band = 0;  ///< mm, left out at the corners
+};
+
+/// A face's line in the section: o + u d + z(u) n, with z = c0 + c1 u / length + c2 (u / length)^2.
+struct GrooveFace {
+    Eigen::Vector2d o, d, n;
+    double length = 1;                   ///< mm
+    Eigen::Vector3d c{0, 0, 0};          ///< mm
+    Eigen::Matrix3d covariance;          ///< of c, from noise, mm^2
+    double slope_along = 0;              ///< dz/ds at the place
+    double scale = 0;                    ///< mm, robust 1-sigma of the points
+    std::vector<Eigen::Vector3d> shift;  ///< by how much c changes when a view's points move by 1 mm along n
+
+    Eigen::Vector2d at(double u) const;
+    Eigen::Vector2d tangent(double u) const;  ///< unit
+    double off(const Eigen::Vector2d& x) const;
+    double along(const Eigen::Vector2d& x) const { return d.dot(x - o); }
+};
+
+/// What kind of root a groove has, along all of it.
+struct GrooveRoot {
+    bool closed = false;        ///< the bevels meet in a line
+    std::optional<int> square;  ///< the side without a bevel
+};
+
+/// Of one place, as measured: the numbers hang on what the root is.
+struct GrooveFit {
+    std::array<GrooveFace, 2> top, bevel;
+    std::array<std::optional<DensityEdge>, 2> end;  ///< of each bevel, along its d
+    std::array<std::vector<double>, 2> end_shift;   ///< by how much `at` changes with a view's points
+    std::array<double, 2> density{0, 0};            ///< of each bevel's points right at the place, per mm^2
+    GrooveShape shape;                              ///< as fitted: where to look next
+};
+
+/// Root and numbers of a fitted section.
+struct GrooveNumbers {
+    static constexpr int kCount = 9;
+    using Vector = Eigen::Matrix<double, kCount, 1>;
+    /// a and h of the root, gap, mismatch, bevels 1 and 2, included angle, depth, area.
+    Vector value = Vector::Zero();
+    Vector variance = Vector::Zero();       ///< from noise
+    Vector shift = Vector::Zero();          ///< per variance of the views' shifts along any direction
+    std::array<Eigen::Vector2d, 2> normal;  ///< of the bevels at the root, in the section
+
+    Eigen::Vector2d root() const { return value.head<2>(); }
+    Measured number(int i, double registration) const;
+    /// 1-sigma of the root across the seam.
+    double sigma(double registration) const;
+};
+
+/// Fits the faces about `guess`; empty when one of them has too few points.
+std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::size_t> view_starts,
+                                    const ScanScale& scale, const GrooveFrame& frame, const GrooveShape& guess,
+                                    const GrooveWindow& window, int rounds);
+
+/// By the places together.
+GrooveRoot root_of(std::span<const GrooveFit> fits);
+
+/// Empty when the faces do not make a groove.
+std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& root);
+
+GrooveStation station_of(const GrooveNumbers& numbers, double registration);
+
+}  // namespace seampath
