@@ -40,12 +40,7 @@ std::optional<GroovePlace> measure(const Tracker& tracker, GrooveFrame frame, co
     if (!fit) {
         return std::nullopt;
     }
-    const GrooveRoot root = root_of({&*fit, 1});
-    const auto numbers = numbers_of(*fit, root);
-    if (!numbers) {
-        return std::nullopt;
-    }
-    return GroovePlace{frame, std::move(*fit), *numbers};
+    return GroovePlace{frame, std::move(*fit), {}};
 }
 
 // The direction of the groove at a place: along both bevels.
@@ -53,7 +48,8 @@ Vector3d direction_of(const GroovePlace& place) {
     Vector3d n[2];
     for (std::size_t k = 0; k < 2; ++k) {
         const GrooveFace& face = place.fit.bevel[k];
-        n[k] = (place.frame.direction(place.numbers.normal[k]) - face.slope_along * place.frame.t).normalized();
+        n[k] = (place.frame.direction(face.n - face.c[1] / face.length * face.d) - face.slope_along * place.frame.t)
+                   .normalized();
     }
     return n[0].cross(n[1]).normalized();
 }
@@ -246,7 +242,7 @@ double reach_from(const Tracker& tracker, const Station& at, const GrooveFit& fi
     double reach = look;
     for (std::size_t k = 0; k < 2; ++k) {
         std::vector<double> s;
-        const double corner = fit.bevel[k].along(fit.shape.corner[k]), end = fit.end[k]->at;
+        const double corner = fit.bevel[k].along(fit.shape.corner[k]), end = fit.bevel[k].along(fit.shape.end[k]);
         for (const GroovePoint& q : points) {
             const double u = fit.bevel[k].along(q.section());
             if (u > end && u < corner && std::abs(fit.bevel[k].off(q.section())) < 5 * scale.noise) {
@@ -349,13 +345,6 @@ std::optional<GrooveWay> measure_groove(const Tracker& tracker, const GrooveWay&
     std::vector<GrooveFit> fits;
     for (auto& place : measured) {
         if (place) {
-            fprintf(stderr,
-                    "E %.3f %.3f %.3f | %.3f %.3f %.3f den %.1f %.1f bend %.2e mid %.3f %.3f shape %.3f %.3f %.3f "
-                    "%.3f\n",
-                    place->fit.end[0]->at, place->fit.end[0]->blur, place->fit.end[0]->density, place->fit.end[1]->at,
-                    place->fit.end[1]->blur, place->fit.end[1]->density, place->fit.density[0], place->fit.density[1],
-                    place->frame.bend.norm(), middle_of(*place)[0], middle_of(*place)[1], place->fit.shape.end[0][0],
-                    place->fit.shape.end[0][1], place->fit.shape.end[1][0], place->fit.shape.end[1][1]);
             fits.push_back(place->fit);
             way.places.push_back(std::move(*place));
         }
@@ -363,9 +352,18 @@ std::optional<GrooveWay> measure_groove(const Tracker& tracker, const GrooveWay&
     if (way.places.size() < kFewest || 2 * way.places.size() < measured.size()) {
         return std::nullopt;
     }
-    way.root = root_of(fits);
-    for (GroovePlace& place : way.places) {
-        place.numbers = *numbers_of(place.fit, way.root);
+    const auto root = pool_roots(fits, (end - begin) / static_cast<double>(count), 2 * window.back);
+    if (!root) {
+        return std::nullopt;
+    }
+    way.root = *root;
+    for (std::size_t i = 0; i < way.places.size(); ++i) {
+        const auto numbers = numbers_of(fits[i], way.root);
+        way.places[i].fit = std::move(fits[i]);
+        if (!numbers) {
+            return std::nullopt;
+        }
+        way.places[i].numbers = *numbers;
     }
     return way;
 }

@@ -39,12 +39,12 @@ Vector2d meet(const GrooveFace& f, const GrooveFace& g) {
     return f.at(u);
 }
 
-/// The place of a face's line that is as high, along `up`, as `x`.
-Vector2d level_with(const GrooveFace& face, const Vector2d& x, const Vector2d& up) {
-    double u = 0;
+/// The place of a face's line that lies `depth` below x, along `up`.
+Vector2d at_depth(const GrooveFace& face, const Vector2d& x, const Vector2d& up, double depth) {
+    double u = face.along(x - depth * up);
     for (int i = 0; i < 20; ++i) {
         const double climbs = up.dot(face.tangent(u));
-        const double step = up.dot(x - face.at(u)) / (std::abs(climbs) < 1e-3 ? 1e-3 : climbs);
+        const double step = (up.dot(x - face.at(u)) - depth) / (std::abs(climbs) < 1e-3 ? 1e-3 : climbs);
         u += step * face.tangent(u).dot(face.d);
         if (std::abs(step) < 1e-12) {
             break;
@@ -69,14 +69,14 @@ Ends ends_of(const GrooveFit& fit, const GrooveRoot& root) {
     for (std::size_t k = 0; k < 2; ++k) {
         e.corner[k] = meet(fit.bevel[k], fit.top[k]);
         e.top_normal[k] = normal_at(fit.top[k], e.corner[k]);
-        e.end[k] = fit.bevel[k].at(fit.end[k]->at);
+        e.end[k] = at_depth(fit.bevel[k], e.corner[k], e.top_normal[k], fit.lower[k].depth);
     }
     e.up = (e.top_normal[0] + e.top_normal[1]).normalized();
     if (root.closed) {
         e.end[0] = e.end[1] = meet(fit.bevel[0], fit.bevel[1]);
     } else if (root.square) {
         const auto q = static_cast<std::size_t>(*root.square);
-        e.end[q] = level_with(fit.bevel[q], e.end[1 - q], e.up);
+        e.end[q] = at_depth(fit.bevel[q], e.end[1 - q], e.up, 0);
     }
     return e;
 }
@@ -133,27 +133,9 @@ double GrooveNumbers::sigma(double registration) const {
     return std::hypot(number(kRootA, registration).sigma, number(kRootH, registration).sigma);
 }
 
-GrooveRoot root_of(std::span<const GrooveFit> fits) {
-    std::array<std::vector<double>, 2> bevel, beyond;
-    for (const GrooveFit& fit : fits) {
-        const Values v = values_of(fit, {});
-        const Vector2d x = meet(fit.bevel[0], fit.bevel[1]);
-        for (std::size_t k = 0; k < 2; ++k) {
-            bevel[k].push_back(v[k == 0 ? kBevel1 : kBevel2]);
-            // How far short of the crossing the bevel ends, in sigmas.
-            const double short_of = fit.end[k]->at - fit.bevel[k].along(x);
-            beyond[k].push_back(short_of / std::hypot(fit.end[k]->sigma, fit.end[k]->blur));
-        }
-    }
-    GrooveRoot root;
-    for (int k = 0; k < 2; ++k) {
-        if (quantile(bevel[static_cast<std::size_t>(k)], 0.5) < kSquare) {
-            root.square = k;
-        }
-    }
-    constexpr double kNoGap = 2;
-    root.closed = std::max(std::abs(quantile(beyond[0], 0.5)), std::abs(quantile(beyond[1], 0.5))) < kNoGap;
-    return root;
+double crossing_depth(const GrooveFit& fit, std::size_t k) {
+    const Vector2d corner = meet(fit.bevel[k], fit.top[k]);
+    return normal_at(fit.top[k], corner).dot(corner - meet(fit.bevel[0], fit.bevel[1]));
 }
 
 std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& root) {
@@ -185,11 +167,13 @@ std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& 
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {
-        const Values J = derivative(fit, root, [&](GrooveFit& f, double step) { f.end[k]->at += step; });
-        numbers.variance += fit.end[k]->sigma * fit.end[k]->sigma * J.cwiseAbs2();
-        for (std::size_t v = 0; v < fit.end_shift[k].size(); ++v) {
-            view_at(v)[0] += fit.bevel[k].d[0] * fit.end_shift[k][v] * J;
-            view_at(v)[1] += fit.bevel[k].d[1] * fit.end_shift[k][v] * J;
+        const BevelDepth& lower = fit.lower[k];
+        const Values J = derivative(fit, root, [&](GrooveFit& f, double step) { f.lower[k].depth += step; });
+        numbers.variance += lower.sigma * lower.sigma * J.cwiseAbs2();
+        // Points of a bevel's end that move along it carry the end with them, and not the top.
+        for (std::size_t v = 0; v < lower.share.size(); ++v) {
+            view_at(v)[0] -= fit.bevel[k].d[0] * lower.share[v] * J * fit.bevel[k].d.dot(fit.top[k].n);
+            view_at(v)[1] -= fit.bevel[k].d[1] * lower.share[v] * J * fit.bevel[k].d.dot(fit.top[k].n);
         }
     }
     for (const auto& view : by_view) {

@@ -110,11 +110,12 @@ double crossing(const GrooveFace& a, const GrooveFace& b) {
 }
 
 // Of what views see of one end, the mean of those that see as far as the one that sees furthest, weighted by how sure
-// they are; `share` of each view in it. Empty when none sees it.
-std::optional<DensityEdge> furthest(const std::vector<std::optional<DensityEdge>>& seen, std::vector<double>& share) {
+// they are; and the share of each view in it. Empty when none sees it.
+std::optional<std::pair<DensityEdge, std::vector<double>>> furthest(
+    const std::vector<std::optional<DensityEdge>>& seen) {
     constexpr double kAsFar = 2.5;   // sigmas
     constexpr double kLeast = 0.08;  // of the densest view's density
-    share.assign(seen.size(), 0);
+    std::vector<double> share(seen.size(), 0);
     const DensityEdge* first = nullptr;
     double densest = 0;
     for (const auto& edge : seen) {
@@ -146,7 +147,7 @@ std::optional<DensityEdge> furthest(const std::vector<std::optional<DensityEdge>
     mean.at /= weights;
     mean.blur /= weights;
     mean.sigma = 1 / std::sqrt(weights);
-    return mean;
+    return std::pair(mean, share);
 }
 
 /// A section in the making.
@@ -185,7 +186,7 @@ struct Work {
 
     // Along -d, so that the bevel's points lie before their end; view by view: a view may be shadowed where another
     // sees on.
-    std::optional<DensityEdge> find_end(int k, double from) {
+    std::optional<std::pair<DensityEdge, std::vector<double>>> find_end(int k, double from) {
         const auto side = static_cast<std::size_t>(k);
         const GrooveFace& face = fit.bevel[side];
         const Gate gate{-kDeepest, face.along(fit.shape.corner[side]), gate_width(), 0.02, from};
@@ -198,7 +199,7 @@ struct Work {
         for (auto& of_view : x) {
             seen.push_back(density_edge(std::move(of_view), -from, scale.spacing, scale.noise));
         }
-        return furthest(seen, fit.end_shift[side]);
+        return furthest(seen);
     }
 
     void set_corners() {
@@ -261,7 +262,8 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
         work.most = round + 1 < rounds ? kRoughly : kMostPoints;
         std::array<double, 2> low{0, 0}, high{0, 0};
         for (std::size_t k = 0; k < 2; ++k) {
-            const double from = round == 0 ? 0 : fit.end[k]->at, to = fit.bevel[k].along(fit.shape.corner[k]);
+            const double from = round == 0 ? 0 : fit.bevel[k].along(fit.shape.end[k]),
+                         to = fit.bevel[k].along(fit.shape.corner[k]);
             low[k] = from + (round == 0 ? 0 : std::min(0.5 * window.band, 0.2 * (to - from)));
             high[k] = to - std::min(window.band, 0.3 * (to - from));
         }
@@ -275,18 +277,24 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
         for (int k = 0; k < 2; ++k) {
             const auto side = static_cast<std::size_t>(k);
             const double corner = fit.bevel[side].along(fit.shape.corner[side]);
-            fit.end[side] = work.find_end(k, corner - 0.6 * (corner - low[side]));
-            if (!fit.end[side]) {
-                return std::nullopt;
+            const auto end = work.find_end(k, corner - 0.6 * (corner - low[side]));
+            fit.seen[side] = std::nullopt;
+            if (end) {
+                const auto& [edge, share] = *end;
+                fit.shape.end[side] = fit.bevel[side].at(-edge.at);
+                const Vector2d top = fit.top[side].tangent(0), down = fit.shape.corner[side] - fit.shape.end[side];
+                const double depth = std::abs(cross(top, down));
+                fit.seen[side] = {
+                    depth, std::hypot(edge.sigma * depth / down.norm(), std::sqrt(fit.top[side].covariance(0, 0))),
+                    share};
             }
-            fit.end[side]->at = -fit.end[side]->at;
-            fit.shape.end[side] = fit.bevel[side].at(fit.end[side]->at);
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {
         const double length = (fit.shape.corner[k] - fit.shape.end[k]).norm();
         const double half = std::min({window.back, window.ahead, std::max(2.5 * scale.spacing, work.along() / 8)});
-        const Gate gate{fit.end[k]->at, fit.end[k]->at + length, work.gate_width()};
+        const double end = fit.bevel[k].along(fit.shape.end[k]);
+        const Gate gate{end, end + length, work.gate_width()};
         double count = 0;
         for (const GroovePoint& q : points) {
             count +=

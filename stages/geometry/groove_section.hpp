@@ -48,17 +48,25 @@ struct GrooveFace {
     double along(const Eigen::Vector2d& x) const { return d.dot(x - o); }
 };
 
+/// How deep below its own top a bevel ends.
+struct BevelDepth {
+    double depth = 0;           ///< mm
+    double sigma = 0;           ///< mm, from noise
+    std::vector<double> share;  ///< of each view in it
+};
+
 /// What kind of root a groove has, along all of it.
 struct GrooveRoot {
-    bool closed = false;        ///< the bevels meet in a line
-    std::optional<int> square;  ///< the side without a bevel
+    bool closed = false;                         ///< the bevels meet in a line
+    std::optional<int> square;                   ///< the side without a bevel
+    std::array<bool, 2> as_other{false, false};  ///< the bevel's end is hidden, and taken to be as deep as the other's
 };
 
 /// Of one place, as measured: the numbers hang on what the root is.
 struct GrooveFit {
     std::array<GrooveFace, 2> top, bevel;
-    std::array<std::optional<DensityEdge>, 2> end;  ///< of each bevel, along its d
-    std::array<std::vector<double>, 2> end_shift;   ///< by how much `at` changes with a view's points
+    std::array<std::optional<BevelDepth>, 2> seen;  ///< where each bevel's points end, here
+    std::array<BevelDepth, 2> lower;                ///< where each bevel ends, by all that is known
     std::array<double, 2> density{0, 0};            ///< of each bevel's points right at the place, per mm^2
     GrooveShape shape;                              ///< as fitted: where to look next
 };
@@ -84,8 +92,13 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
                                     const ScanScale& scale, const GrooveFrame& frame, const GrooveShape& guess,
                                     const GrooveWindow& window, int rounds);
 
-/// By the places together.
-GrooveRoot root_of(std::span<const GrooveFit> fits);
+/// Where the bevels end by all places together, in order along the groove and `step` mm apart, each of which saw
+/// `window` mm of it; sets `lower` of each. A bevel's end is often hidden in the shadow of the other plate: it is then
+/// where it is seen elsewhere, and no deeper than that shadow where it is not. Empty when no place saw any.
+std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, double window);
+
+/// How deep below side k's top the lines of both bevels meet, mm.
+double crossing_depth(const GrooveFit& fit, std::size_t k);
 
 /// Empty when the faces do not make a groove.
 std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& root);
