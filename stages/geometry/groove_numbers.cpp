@@ -89,9 +89,7 @@ Values values_of(const GrooveFit& fit, const GrooveRoot& root) {
     for (std::size_t k = 0; k < 2; ++k) {
         const double half = 0.5 * (fit.bevel[k].along(e.corner[k]) + fit.bevel[k].along(e.end[k]));
         tangent[k] = fit.bevel[k].tangent(half);
-        const Vector2d out = k == 0 ? Vector2d(-e.top_normal[k][1], e.top_normal[k][0])
-                                    : Vector2d(e.top_normal[k][1], -e.top_normal[k][0]);
-        bevel[k] = std::atan2(tangent[k].dot(out), tangent[k].dot(e.top_normal[k]));
+        bevel[k] = bevel_angle(fit, k, half);
         depth[k] = (e.corner[k] - e.end[k]).dot(e.top_normal[k]);
     }
     Values v;
@@ -131,6 +129,12 @@ Measured GrooveNumbers::number(int i, double registration) const {
 
 double GrooveNumbers::sigma(double registration) const {
     return std::hypot(number(kRootA, registration).sigma, number(kRootH, registration).sigma);
+}
+
+double bevel_angle(const GrooveFit& fit, std::size_t k, double u) {
+    const Vector2d up = normal_at(fit.top[k], meet(fit.bevel[k], fit.top[k])), t = fit.bevel[k].tangent(u);
+    const Vector2d out = k == 0 ? Vector2d(-up[1], up[0]) : Vector2d(up[1], -up[0]);
+    return std::atan2(t.dot(out), t.dot(up));
 }
 
 double crossing_depth(const GrooveFit& fit, std::size_t k) {

@@ -15,6 +15,46 @@ constexpr double kApart = 3;          // sigmas
 constexpr double kLeastNoise = 0.02;  // mm
 constexpr double kHidden = 0.5;       // share of the places that must see an end for it to be known by itself
 
+// Gives the bevels of side k what all places tell of its angle, as far as it varies by no more than noise: the lines
+// of places that see little of the bevel are carried on further than they know themselves.
+void share_angle(std::span<GrooveFit> fits, std::size_t k, double step, double window) {
+    using Row = Eigen::RowVector3d;
+    std::vector<Row> by(fits.size());  // of the angle, by the line's coefficients
+    std::vector<double> angle(fits.size()), variance(fits.size());
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+        const GrooveFace& face = fits[i].bevel[k];
+        const double middle = 0.5 * (face.along(fits[i].shape.corner[k]) + face.along(fits[i].shape.end[k]));
+        by[i] = -Row(0, 1 / face.length, 2 * middle / (face.length * face.length));
+        angle[i] = bevel_angle(fits[i], k, middle);
+        variance[i] = by[i] * face.covariance * by[i].transpose();
+    }
+    std::vector<double> sorted = variance, sure, off, noises;
+    const double most = 2 * quantile(sorted, 0.25);
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+        if (variance[i] <= most) {
+            sure.push_back(angle[i]);
+            noises.push_back(variance[i]);
+        }
+    }
+    const double whole = quantile(sure, 0.5);
+    for (const double x : sure) {
+        off.push_back(std::abs(x - whole));
+    }
+    const double scatter = std::pow(1.4826 * quantile(off, 0.5), 2), noise = quantile(noises, 0.5);
+    const double independent = std::max(1.0, static_cast<double>(sure.size()) * step / window);
+    const double prior = std::max(0.0, scatter - noise) + std::max(scatter, noise) / independent;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+        GrooveFace& face = fits[i].bevel[k];
+        const Eigen::Vector3d gain = face.covariance * by[i].transpose() / (variance[i] + prior);
+        const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * by[i];
+        face.c += gain * (whole - angle[i]);
+        face.covariance = kept * face.covariance;
+        for (Eigen::Vector3d& shift : face.shift) {
+            shift = kept * shift;
+        }
+    }
+}
+
 /// Of one side, along the groove.
 struct Level {
     double depth = 0, variance = 0;
@@ -108,6 +148,8 @@ bool meets(std::span<const GrooveFit> fits, const Level& level, std::size_t k) {
 }  // namespace
 
 std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, double window) {
+    share_angle(fits, 0, step, window);
+    share_angle(fits, 1, step, window);
     std::array<std::optional<Level>, 2> level{level_of(fits, 0, step, window), level_of(fits, 1, step, window)};
     if (fits.empty() || (!level[0] && !level[1])) {
         return std::nullopt;

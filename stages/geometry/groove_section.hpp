@@ -97,6 +97,9 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
 /// where it is seen elsewhere, and no deeper than that shadow where it is not. Empty when no place saw any.
 std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, double window);
 
+/// Of side k's bevel from the upright of its plate, at the place u of its line; rad.
+double bevel_angle(const GrooveFit& fit, std::size_t k, double u);
+
 /// How deep below side k's top the lines of both bevels meet, mm.
 double crossing_depth(const GrooveFit& fit, std::size_t k);
 
