@@ -119,11 +119,18 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
                             options.station_mm > 0 ? options.station_mm : station_distance(scale, scan.points.size())};
     const Around around{scan, grid, field, surfels, creases, following};
 
+    Grooves grooves = find_grooves(around, options.min_length_mm);
     if (asked(options, JointChoice::v_groove)) {
-        Grooves grooves = find_grooves(around, options.min_length_mm);
+        if (grooves.seams.empty() && options.joint == JointChoice::v_groove) {
+            result.remarks.emplace_back("no V-groove: no two bevels face each other between level tops");
+        }
         result.registration_mm = grooves.registration_mm;
         leave_out(creases, grooves.claimed);
         take(result, std::move(grooves.seams), std::move(grooves.remarks));
+    } else {
+        for (const Seam& groove : grooves.seams) {
+            result.remarks.push_back("the scan shows a V-groove, which was not asked for: " + groove.kind_reason);
+        }
     }
     Folds folds = find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options);
     result.registration_mm = std::max(result.registration_mm, folds.registration_mm);

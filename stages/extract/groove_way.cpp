@@ -22,8 +22,7 @@ GrooveWindow following_window_of(const ScanScale& scale) {
 }
 
 GrooveWindow measuring_window_of(const ScanScale& scale) {
-    const SectionWindow w = measuring_window(scale);
-    return {w.along, w.along, w.away, w.band};
+    return groove_window(measuring_window(scale));
 }
 
 GrooveShape moved(GrooveShape shape, const Vector2d& by) {
@@ -335,8 +334,7 @@ std::optional<GrooveWay> measure_groove(const Tracker& tracker, const GrooveWay&
         const Station at = course.at(s);
         GrooveWindow w = window;
         if (!followed.closed) {
-            w.back = std::min(window.back, s - begin) + std::max(0.0, window.ahead - (end - s));
-            w.ahead = std::min(window.ahead, end - s) + std::max(0.0, window.back - (s - begin));
+            w = near_ends(window, s - begin, end - s);
         }
         measured[i] = measure(tracker, at.frame, at.shape, w, 3);
     });

@@ -160,13 +160,15 @@ std::string reason(const GrooveWay& way, const Seam& seam) {
     text += fixed(median([](const GrooveStation& s) { return s.included_angle_rad.value; }) / kDegree, 1) + " deg" +
             (way.root.square ? " faces a square edge" : " face each other") + " between level tops, " +
             fixed(median([](const GrooveStation& s) { return s.depth_mm.value; }), 2) + " mm deep, ";
-    return text + (way.root.closed
-                       ? "and meet at the root"
-                       : "and end " + fixed(median([](const GrooveStation& s) { return s.gap_mm.value; }), 2) +
-                             " mm apart at the root");
+    text += way.root.closed ? "and meet at the root"
+                            : "and end " + fixed(median([](const GrooveStation& s) { return s.gap_mm.value; }), 2) +
+                                  " mm apart at the root";
+    const bool guessed = way.root.as_other[0] || way.root.as_other[1];
+    return guessed ? text + "; the lower plate's bevel is not seen to its end and taken to be as deep as the other"
+                   : text;
 }
 
-Seam seam_of(const GrooveWay& way, const Vector3d& origin, double registration) {
+Seam seam_of(const GrooveWay& way, const Vector3d& origin, double registration, double spacing) {
     Seam seam;
     seam.kind = JointKind::v_groove;
     seam.closed = way.closed;
@@ -183,7 +185,12 @@ Seam seam_of(const GrooveWay& way, const Vector3d& origin, double registration) 
         seam.points.push_back(point);
         seam.groove.push_back(station_of(place.numbers, registration));
     }
-    seam.confidence = 1;
+    // A groove fifteen point distances deep nobody takes for roughness.
+    std::vector<double> depths;
+    for (const GrooveStation& s : seam.groove) {
+        depths.push_back(s.depth_mm.value);
+    }
+    seam.confidence = std::min(1.0, quantile(depths, 0.5) / (15 * spacing));
     seam.kind_reason = reason(way, seam);
     return seam;
 }
@@ -248,7 +255,8 @@ Grooves find_grooves(const Around& around, double min_length_mm) {
     result.registration_mm = registration_of(differences);
     const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1);
     for (const GrooveWay& way : ways) {
-        result.seams.push_back(seam_of(way, around.scan.origin_mm, result.registration_mm * (1 + 0.6 / freedom)));
+        result.seams.push_back(seam_of(way, around.scan.origin_mm, result.registration_mm * (1 + 0.6 / freedom),
+                                       around.field.overall.spacing));
     }
     return result;
 }

@@ -183,6 +183,16 @@ std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& 
     for (const auto& view : by_view) {
         numbers.shift += view[0].cwiseAbs2() + view[1].cwiseAbs2();
     }
+    if (root.closed) {
+        // How sure it is that there is no gap is what the ends tell of one.
+        GrooveRoot open = root;
+        open.closed = false;
+        const auto of_ends = numbers_of(fit, open);
+        if (of_ends) {
+            numbers.variance[kGap] = of_ends->variance[kGap];
+            numbers.shift[kGap] = of_ends->shift[kGap];
+        }
+    }
     const Ends e = ends_of(fit, root);
     for (std::size_t k = 0; k < 2; ++k) {
         numbers.normal[k] = normal_at(fit.bevel[k], e.end[k]);

@@ -226,6 +226,17 @@ double GrooveFace::off(const Vector2d& x) const {
     return n.dot(x - o) - (c[0] + c[1] * u + c[2] * u * u);
 }
 
+GrooveWindow groove_window(const SectionWindow& window) {
+    return {window.along, window.along, window.away, window.band};
+}
+
+GrooveWindow near_ends(const GrooveWindow& window, double to_begin, double to_end) {
+    GrooveWindow w = window;
+    w.back = std::min(window.back, to_begin) + std::max(0.0, window.ahead - to_end);
+    w.ahead = std::min(window.ahead, to_end) + std::max(0.0, window.back - to_begin);
+    return w;
+}
+
 std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::size_t> view_starts,
                                     const ScanScale& scale, const GrooveFrame& frame, const GrooveShape& guess,
                                     const GrooveWindow& window, int rounds) {

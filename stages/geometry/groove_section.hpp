@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "stages/geometry/density_edge.hpp"
+#include "stages/geometry/flank.hpp"
 #include "stages/geometry/groove_points.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/scale.hpp"
@@ -31,6 +32,13 @@ struct GrooveWindow {
     double away = 0;  ///< mm, along the tops
     double band = 0;  ///< mm, left out at the corners
 };
+
+/// The same window as for flanks, both ways along the groove.
+GrooveWindow groove_window(const SectionWindow& window);
+
+/// Of a window at a place that lies this far from both ends of an open groove: what ends cut off on one side is added
+/// to the other.
+GrooveWindow near_ends(const GrooveWindow& window, double to_begin, double to_end);
 
 /// A face's line in the section: o + u d + z(u) n, with z = c0 + c1 u / length + c2 (u / length)^2.
 struct GrooveFace {
@@ -91,6 +99,12 @@ struct GrooveNumbers {
 std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::size_t> view_starts,
                                     const ScanScale& scale, const GrooveFrame& frame, const GrooveShape& guess,
                                     const GrooveWindow& window, int rounds);
+
+/// The faces' whereabouts where only the root, at the frame's own place, and both bevels' normals in the section are
+/// known: a bevel's upper end is where its points end, and the top is the line beside it that most points lie on. Empty
+/// where there are no bevels.
+std::optional<GrooveShape> shape_about(const PointGrid& grid, const ScanScale& scale, const GrooveFrame& frame,
+                                       const std::array<Eigen::Vector2d, 2>& normals);
 
 /// Where the bevels end by all places together, in order along the groove and `step` mm apart, each of which saw
 /// `window` mm of it; sets `lower` of each. A bevel's end is often hidden in the shadow of the other plate: it is then

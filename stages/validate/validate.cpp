@@ -8,7 +8,9 @@
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/section.hpp"
+#include "stages/geometry/views.hpp"
 #include "stages/text.hpp"
+#include "stages/validate/groove_deviation.hpp"
 
 namespace seampath {
 namespace {
@@ -17,6 +19,7 @@ constexpr double kNoiseTolerance = 3;    // tolerance by default, in sigmas of a
 constexpr double kLeastTolerance = 0.1;  // mm; tracking accuracy that arc welding asks of a path
 constexpr double kGuard = 2;             // sigmas of the measurement taken off the tolerance (ISO 14253-1)
 constexpr double kMostSigma = 3;         // of the seam's usual sigma; a weaker fit says nothing about the model
+constexpr double kGrooveReach = 40;      // mm; tops begin far from the root of a deep groove
 constexpr double kLeastDensity = 0.1;    // of the seam's usual density of flank points
 
 // Only scan points near the curve matter: those in cells of the window's size that the curve comes near to.
@@ -106,7 +109,8 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     const ArcLength arc(model.curve);
     const ScanScale scale = scale_along(field, arc, scan.origin_mm);
     const SectionWindow window = measuring_window(scale);
-    const PointGrid grid = grid_near(scan, arc, 1.3 * window.away);
+    const double reach = model.kind == JointKind::v_groove ? kGrooveReach : 1.3 * window.away;
+    const PointGrid grid = grid_near(scan, arc, reach);
     const auto count =
         std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
     Deviation result;
@@ -118,23 +122,33 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     std::vector<double> density[2];
     density[0].assign(count, 0);
     density[1].assign(count, 0);
-    parallel_for(count, 4, [&](std::size_t i) {
+    for (std::size_t i = 0; i < count; ++i) {
         DeviationSample& sample = result.samples[i];
         sample.station_mm = arc.length() * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
         sample.p = position(model.curve, arc.parameter(sample.station_mm));
-        const FlankSample flanks = flanks_at(model, sample.station_mm);
-        const auto fit =
-            fit_section(grid, scale, {sample.p - scan.origin_mm, outwards * flanks.n1, outwards * flanks.n2}, window);
-        if (fit) {
-            sample.flank1_mm = outwards * signed_distance(fit->flank[0]);
-            sample.flank2_mm = outwards * signed_distance(fit->flank[1]);
-            sample.distance_mm = fit->shift;
-            sample.sigma_mm = fit->sigma;
-            sample.covered = true;
-            density[0][i] = fit->flank[0].slab_points;
-            density[1][i] = fit->flank[1].slab_points;
-        }
-    });
+    }
+    if (model.kind == JointKind::v_groove) {
+        // An organised cloud is one view.
+        const std::vector<std::size_t> views =
+            scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
+        detail::measure_groove_samples(model, arc, scan.origin_mm, grid, views, scale, result.samples, density);
+    } else {
+        parallel_for(count, 4, [&](std::size_t i) {
+            DeviationSample& sample = result.samples[i];
+            const FlankSample flanks = flanks_at(model, sample.station_mm);
+            const auto fit = fit_section(
+                grid, scale, {sample.p - scan.origin_mm, outwards * flanks.n1, outwards * flanks.n2}, window);
+            if (fit) {
+                sample.flank1_mm = outwards * signed_distance(fit->flank[0]);
+                sample.flank2_mm = outwards * signed_distance(fit->flank[1]);
+                sample.distance_mm = fit->shift;
+                sample.sigma_mm = fit->sigma;
+                sample.covered = true;
+                density[0][i] = fit->flank[0].slab_points;
+                density[1][i] = fit->flank[1].slab_points;
+            }
+        });
+    }
     std::vector<double> sigma;
     for (const DeviationSample& sample : result.samples) {
         if (sample.covered) {
