@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "pipeline/groove_columns.hpp"
 #include "pipeline/report_text.hpp"
 #include "pipeline/svg.hpp"
 #include "stages/geometry/bspline.hpp"
@@ -158,6 +159,43 @@ std::string curvature_plot(const SeamModel& model, const std::vector<Eigen::Vect
                       svg_line(axes, line, "value") + svg_dots(axes, dots, 3, "node") + svg_end());
 }
 
+/// One number of the groove's section over the station, with its band of ±1σ; empty when the scan never shows it.
+std::string groove_plot(const Seam& seam, const GrooveColumn& column) {
+    const std::vector<Measured> values = groove_values(seam, column);
+    std::vector<PlotPoint> line, low, high;
+    double station = 0, least = std::numeric_limits<double>::infinity(), most = -least;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        station += i > 0 ? (seam.points[i].p - seam.points[i - 1].p).norm() : 0;
+        const auto& [value, sigma] = values[i];
+        line.push_back({station, value});
+        low.push_back({station, value - sigma});
+        high.push_back({station, value + sigma});
+        if (std::isfinite(value)) {
+            least = std::min(least, value - sigma);
+            most = std::max(most, value + sigma);
+        }
+    }
+    if (!(most >= least)) {
+        return "";
+    }
+    constexpr double kLeastRange = 0.1;  // of the unit; noise that is far below it should look small
+    const double middle = 0.5 * (least + most), half = padded(0.5 * (most - least), 0.5 * kLeastRange);
+    const std::string label(column.label), unit(column.shown_unit);
+    const PlotAxes axes{kNarrow,       kNarrowHeight,      0, std::max(station, 1e-3), middle - half, middle + half,
+                        "station, mm", label + ", " + unit};
+    return figure("", "<b>" + label + "</b>, with ±1σ",
+                  svg_axes(axes, label + " along the seam") + svg_band(axes, low, high, "sigma") +
+                      svg_line(axes, line, "value") + svg_end());
+}
+
+std::string groove_plots(const Seam& seam) {
+    std::string figures;
+    for (const GrooveColumn& column : kGrooveColumns) {
+        figures += groove_plot(seam, column);
+    }
+    return figures;
+}
+
 /// Speed between neighbouring weld poses; empty when no torch path was planned for the seam.
 std::vector<PlotPoint> torch_speeds(const PartResult& part, std::size_t seam) {
     const auto planned = std::find(part.planned_seams.begin(), part.planned_seams.end(), static_cast<int>(seam));
@@ -210,7 +248,7 @@ std::string seam_plots(const PartResult& part, std::size_t seam) {
     return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], std::max(model.length_mm, 1e-3)) +
            histogram(part.deviations[seam]) +
            curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) +
-           speed_plot(part, seam) + "</div>\n";
+           speed_plot(part, seam) + groove_plots(part.extraction.seams[seam]) + "</div>\n";
 }
 
 }  // namespace seampath

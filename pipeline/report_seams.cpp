@@ -5,7 +5,9 @@
 #include <iterator>
 #include <numbers>
 
+#include "pipeline/groove_columns.hpp"
 #include "stages/geometry/bspline.hpp"
+#include "stages/geometry/robust.hpp"
 
 namespace seampath {
 namespace {
@@ -75,6 +77,26 @@ ReportRows model_rows(const SeamModel& model) {
     return rows;
 }
 
+/// Medians along the seam of what the scan shows of its groove; none for other joints.
+ReportRows groove_rows(const Seam& seam) {
+    ReportRows rows;
+    for (const GrooveColumn& column : kGrooveColumns) {
+        std::vector<double> value, sigma;
+        for (const Measured& measured : groove_values(seam, column)) {
+            if (std::isfinite(measured.value)) {
+                value.push_back(measured.value);
+                sigma.push_back(measured.sigma);
+            }
+        }
+        if (!value.empty()) {
+            const std::string base(column.name), unit(column.unit), label(column.label), in(column.shown_unit);
+            rows.push_back(number(base + "_median_" + unit, label + ", median", quantile(value, 0.5), in));
+            rows.push_back(number(base + "_sigma_" + unit, label + ", 1σ", quantile(sigma, 0.5), in));
+        }
+    }
+    return rows;
+}
+
 }  // namespace
 
 double modelled_length(const Seam& seam) {
@@ -114,6 +136,7 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
         {
             fact("kind", "Joint", name(model.kind)),
             {"closed", "Closed", model.closed, "", "", 0},
+            fact("kind_reason", "What was seen", seam.kind_reason),
             number("confidence", "Confidence of detection", seam.confidence, "", 2),
             number("length_mm", "Length", model.length_mm, "mm"),
             number("modelled_length_mm", "Bridged by model", modelled_length(seam), "mm"),
@@ -142,6 +165,8 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
     const auto before = std::find_if(report.rows.begin(), report.rows.end(),
                                      [](const ReportRow& row) { return row.name == "residual_rms_mm"; });
     report.rows.insert(before, model_facts.begin(), model_facts.end());
+    const ReportRows groove = groove_rows(seam);
+    report.rows.insert(report.rows.end(), groove.begin(), groove.end());
     return report;
 }
 

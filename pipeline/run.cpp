@@ -70,7 +70,8 @@ void walk_stages(PartResult& part, Walk& walk) {
 
 /// Programs and reports of an earlier run; they must not stand beside a config that they don't follow from.
 void remove_products(const RunFolder& folder) {
-    for (const auto* file : {"seam_points.csv", "waypoints.csv", "seams.json", "report.json", "report.html"}) {
+    for (const auto* file :
+         {"seam_points.csv", "groove.csv", "waypoints.csv", "seams.json", "report.json", "report.html"}) {
         folder.remove(file);
     }
     for (const auto robot : kRobotNames) {
@@ -81,6 +82,10 @@ void remove_products(const RunFolder& folder) {
 void write_products(const PartResult& part, const Walk& walk) {
     if (!part.nominal) {
         walk.write("seam_points.csv", seam_points_csv(part.extraction.seams));
+        const std::string grooves = groove_csv(part.extraction.seams);
+        if (!grooves.empty()) {
+            walk.write("groove.csv", grooves);
+        }
     }
     walk.write("waypoints.csv", waypoints_csv(part.plan.waypoints, frame_of(part)));
     walk.write("seams.json", seams_json(part));

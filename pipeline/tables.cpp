@@ -1,5 +1,6 @@
 #include "pipeline/tables.hpp"
 
+#include <cmath>
 #include <initializer_list>
 #include <numbers>
 #include <optional>
@@ -7,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/digest.hpp"
+#include "pipeline/groove_columns.hpp"
+#include "pipeline/report_text.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -105,6 +108,33 @@ std::string seam_points_csv(const std::vector<Seam>& seams) {
     return text;
 }
 
+std::string groove_csv(const std::vector<Seam>& seams) {
+    std::string header = "seam,index,station_mm", text;
+    for (const GrooveColumn& column : kGrooveColumns) {
+        for (const std::string_view what : {"_", "_sigma_"}) {
+            header.append(",").append(column.name).append(what).append(column.unit);
+        }
+    }
+    for (std::size_t s = 0; s < seams.size(); ++s) {
+        std::vector<std::vector<Measured>> columns;
+        for (const GrooveColumn& column : kGrooveColumns) {
+            columns.push_back(groove_values(seams[s], column));
+        }
+        double station_mm = 0;
+        for (std::size_t i = 0; i < seams[s].groove.size(); ++i) {
+            station_mm += i > 0 ? (seams[s].points[i].p - seams[s].points[i - 1].p).norm() : 0;
+            text += std::to_string(s) + "," + std::to_string(i) + "," + shortest(station_mm);
+            for (const auto& column : columns) {
+                for (const double value : {column[i].value, column[i].sigma}) {
+                    text += "," + (std::isfinite(value) ? shortest(value) : "");
+                }
+            }
+            text += "\n";
+        }
+    }
+    return text.empty() ? "" : header + "\n" + text;
+}
+
 std::string frame_of(const PartResult& part) {
     return part.nominal ? "nominal" : "scan";
 }
@@ -133,6 +163,7 @@ std::string seams_json(const PartResult& part) {
         } else {
             const Seam& extracted = part.extraction.seams.at(i);
             seam["confidence"] = extracted.confidence;
+            seam["kind_reason"] = valid_utf8(extracted.kind_reason);
             seam["points"] = extracted.points.size();
             seam["model"] = model_json(model);
             seam["nodes"] = nodes_json(part.nodes.at(i), extracted);

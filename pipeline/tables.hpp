@@ -11,6 +11,10 @@ namespace seampath {
 /// Extracted points, scan frame, mm: seam,index,station_mm,x,y,z,n1x,...,sigma_mm. The station is along the polyline.
 std::string seam_points_csv(const std::vector<Seam>& seams);
 
+/// The section of every butt joint and V-groove at its points: seam,index,station_mm, then each number and its 1-sigma,
+/// empty where the scan does not show it. Empty when there is no such seam.
+std::string groove_csv(const std::vector<Seam>& seams);
+
 /// The frame of a part's positions: that of its "scan", or of its "nominal" dimensions.
 std::string frame_of(const PartResult& part);
 
