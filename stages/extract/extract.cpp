@@ -8,8 +8,11 @@
 
 #include "stages/error.hpp"
 #include "stages/extract/around.hpp"
+#include "stages/extract/borders.hpp"
+#include "stages/extract/butts.hpp"
 #include "stages/extract/creases.hpp"
 #include "stages/extract/folds.hpp"
+#include "stages/extract/laps.hpp"
 #include "stages/extract/slanted.hpp"
 #include "stages/extract/surfels.hpp"
 #include "stages/geometry/bulk.hpp"
@@ -52,6 +55,10 @@ void tell_sides(std::vector<Crease>& creases, bool joints_are_convex) {
     }
 }
 
+std::string_view chosen(const ExtractOptions& options) {
+    return kJointChoiceNames[static_cast<std::size_t>(options.joint)];
+}
+
 bool asked(const ExtractOptions& options, JointChoice kind) {
     return options.joint == kind || options.joint == JointChoice::automatic;
 }
@@ -69,21 +76,26 @@ void take(Extraction& result, std::vector<Seam> seams, std::vector<std::string> 
 
 Fields describe(ExtractOptions& o) {
     return {
-        {"joint", choice(o.joint, kJointChoiceNames), "joint kind to look for; auto: by what is seen"},
+        {"joint", choice(o.joint, kJointChoiceNames),
+         "joint kind to look for; auto: by what is seen, each seam with a confidence and a reason"},
         {"convex", &o.convex, "auto also reports convex edges, as corner joints: every block has some"},
         {"max_thickness_mm", &o.max_thickness_mm,
          "a convex edge with a face no wider than this is a plate's rim, no corner joint; 0: a third of the other face",
+         at_least(0)},
+        {"max_step_mm", &o.max_step_mm,
+         "highest step between parallel faces that is taken for machined; a higher one whose upper plate is three "
+         "times "
+         "as wide as thick, on a part that shows a side of its own, is a lap",
          at_least(0)},
         {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
         {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
 }
 
 Extraction extract(const Scan& scan, const ExtractOptions& options) {
-    if (options.joint != JointChoice::automatic && options.joint != JointChoice::fillet &&
-        options.joint != JointChoice::corner) {
-        throw InputError("extract: joint kind '" +
-                         std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
-                         "' is not followed yet; fillet and corner are; set extract.joint to auto, fillet or corner");
+    if (options.joint == JointChoice::v_groove || options.joint == JointChoice::saddle) {
+        throw InputError("extract: joint kind '" + std::string(chosen(options)) +
+                         "' is not followed yet; fillet, lap, butt and corner are; set extract.joint to auto or to one "
+                         "of them");
     }
     if (scan.points.size() < kLeastPoints) {
         throw InputError("extract: the scan has " + std::to_string(scan.points.size()) + " points; at least " +
@@ -112,11 +124,34 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
                             options.station_mm > 0 ? options.station_mm : station_distance(scale, scan.points.size())};
     const Around around{scan, grid, field, surfels, creases, following};
 
-    Folds folds = find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options);
-    result.registration_mm = folds.registration_mm;
+    const bool butt = asked(options, JointChoice::butt), lap = asked(options, JointChoice::lap);
+    const std::vector<Border> borders = butt || lap ? find_borders(around) : std::vector<Border>{};
+    Butts butts = butt ? find_butts(around, borders, options.min_length_mm) : Butts{};
+    take(result, std::move(butts.seams), std::move(butts.remarks));
+    Laps laps = lap ? find_laps(around, borders,
+                                {options.max_step_mm, options.joint == JointChoice::lap, options.min_length_mm})
+                    : Laps{};
+    take(result, std::move(laps.seams), std::move(laps.remarks));
+    Folds folds =
+        find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options, laps.tracks);
+    result.registration_mm = std::max(laps.registration_mm, folds.registration_mm);
     take(result, std::move(folds.seams), std::move(folds.remarks));
     if (asked(options, JointChoice::fillet)) {
         take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});
+    }
+    if (options.joint == JointChoice::fillet) {
+        const Laps contrary =
+            find_laps(around, find_borders(around), {options.max_step_mm, false, options.min_length_mm});
+        for (const Seam& seam : contrary.seams) {
+            result.remarks.push_back("extract.joint says fillet, but the scan shows a lap: " + seam.kind_reason);
+        }
+    } else if (options.joint != JointChoice::automatic && result.seams.empty()) {
+        ExtractOptions automatic = options;
+        automatic.joint = JointChoice::automatic;
+        for (const Seam& seam : extract(scan, automatic).seams) {
+            result.remarks.push_back("extract.joint says " + std::string(chosen(options)) + ", but the scan shows a " +
+                                     std::string(name(seam.kind)) + ": " + seam.kind_reason);
+        }
     }
     std::stable_sort(result.seams.begin(), result.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
