@@ -18,17 +18,25 @@ struct Case {
     const char* what;
     double thickness;
     Course course;
+    bool usual_size = false;  // else small
 };
 
 class Laps : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(, Laps,
-                         testing::Values(Case{"thin", 1.5, Course::straight}, Case{"thick", 9, Course::straight},
-                                         Case{"arc", 3, Course::arc}, Case{"s_curve", 5, Course::s_curve}),
+                         testing::Values(Case{"thin", 1.5, Course::straight, true}, Case{"thick", 9, Course::straight},
+                                         Case{"arc", 3, Course::arc}, Case{"s_curve", 2.4, Course::s_curve, true}),
                          [](const auto& which) { return std::string(which.param.what); });
 
 TEST_P(Laps, AreFoundAtTheFootOfTheStep) {
     const Case c = GetParam();
-    const Found found = find_in(lap(c.thickness, c.course), 21);
+    SceneOptions scene = lap(c.thickness, c.course);
+    if (c.usual_size) {
+        scene = {};
+        scene.kind = SceneKind::lap;
+        scene.course = c.course;
+        scene.thickness_mm = c.thickness;
+    }
+    const Found found = find_in(scene, c.usual_size ? 1 : 21);
     ASSERT_EQ(found.extraction.seams.size(), 1u);
     EXPECT_EQ(found.extraction.seams.front().kind, JointKind::lap);
     EXPECT_LE(found.score.rms_mm, 0.025);
