@@ -9,25 +9,6 @@
 namespace seampath::detail {
 namespace {
 
-// Where a stretch of points ends that holds `density` points per mm up to distance 0; `ahead`: distances beyond it. The
-// end is the likeliest change from that density to that of stray points: each point speaks for going on, each mm
-// without points against it. A hole is passed when the surface goes on behind it, and where four views become one the
-// surface goes on.
-double end_of(std::vector<double>& ahead, double density) {
-    constexpr double kStray = 0.01;  // density of stray points over that of the surface
-    const double cost = density * (1 - kStray) / -std::log(kStray);
-    std::sort(ahead.begin(), ahead.end());
-    double end = 0, best = 0;
-    for (std::size_t i = 0; i < ahead.size(); ++i) {
-        const double gain = static_cast<double>(i + 1) - cost * ahead[i];
-        if (gain > best) {
-            best = gain;
-            end = ahead[i];
-        }
-    }
-    return end;
-}
-
 constexpr std::size_t kStrips = 6;
 
 // The straight line through y at x = first, first + step, ..., read at x = 0: medians of slopes and of intercepts
@@ -51,7 +32,7 @@ double value_at_zero(const std::array<double, kStrips>& y, double first, double 
 // straight line.
 double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direction, double look) {
     const ScanScale scale = tracker.scale_at(place.section);
-    const auto fit = fit_section(tracker.grid, scale, place.section, tracker.window_of(scale));
+    const auto fit = fit_section(tracker.grid, scale, place.section, tracker.windows_at(place.section));
     if (!fit) {
         return 0;
     }
@@ -92,6 +73,21 @@ double reach_ahead(const Tracker& tracker, const TrackPoint& place, double direc
     return reach;
 }
 }  // namespace
+
+double end_of(std::vector<double>& ahead, double density) {
+    constexpr double kStray = 0.01;  // density of stray points over that of the surface
+    const double cost = density * (1 - kStray) / -std::log(kStray);
+    std::sort(ahead.begin(), ahead.end());
+    double end = 0, best = 0;
+    for (std::size_t i = 0; i < ahead.size(); ++i) {
+        const double gain = static_cast<double>(i + 1) - cost * ahead[i];
+        if (gain > best) {
+            best = gain;
+            end = ahead[i];
+        }
+    }
+    return end;
+}
 
 bool straight_end(const std::vector<TrackPoint>& way, bool front, double length, double noise) {
     const auto at = [&](std::size_t i) -> const Eigen::Vector3d& {

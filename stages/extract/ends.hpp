@@ -7,6 +7,12 @@
 /// Where open seams end: where the first of the two flanks does.
 namespace seampath::detail {
 
+/// Where a stretch of points ends that holds `density` points per mm up to distance 0; `ahead`: distances beyond it,
+/// mm, which are sorted. The end is the likeliest change from that density to that of stray points: each point speaks
+/// for going on, each mm without points against it. A hole is passed when the surface goes on behind it, and where four
+/// views become one the surface goes on.
+double end_of(std::vector<double>& ahead, double density);
+
 /// Whether the way runs straight, as far as noise lets it be seen, from its front or back over `length` mm.
 bool straight_end(const std::vector<TrackPoint>& way, bool front, double length, double noise);
 

@@ -8,9 +8,12 @@
 
 #include "stages/error.hpp"
 #include "stages/extract/around.hpp"
+#include "stages/extract/borders.hpp"
+#include "stages/extract/butts.hpp"
 #include "stages/extract/creases.hpp"
 #include "stages/extract/folds.hpp"
 #include "stages/extract/grooves.hpp"
+#include "stages/extract/laps.hpp"
 #include "stages/extract/slanted.hpp"
 #include "stages/extract/surfels.hpp"
 #include "stages/geometry/bulk.hpp"
@@ -72,26 +75,71 @@ void leave_out(std::vector<Crease>& creases, const std::vector<char>& claimed) {
     std::erase_if(creases, [&](const Crease&) { return claimed[i++] != 0; });
 }
 
+// Each kind of joint in turn: what one explains is not offered to the next. `creases` are those of `around`.
+void find_joints(Extraction& result, const Around& around, std::vector<Crease>& creases,
+                 const ExtractOptions& options) {
+    if (asked(options, JointChoice::v_groove)) {
+        Grooves grooves = find_grooves(around, options.min_length_mm);
+        result.registration_mm = grooves.registration_mm;
+        leave_out(creases, grooves.claimed);
+        take(result, std::move(grooves.seams), std::move(grooves.remarks));
+    }
+    const bool butt = asked(options, JointChoice::butt), lap = asked(options, JointChoice::lap);
+    const std::vector<Border> borders = butt || lap ? find_borders(around) : std::vector<Border>{};
+    if (butt) {
+        Butts butts = find_butts(around, borders, options.min_length_mm);
+        take(result, std::move(butts.seams), std::move(butts.remarks));
+    }
+    std::vector<Track> of_laps;
+    if (lap) {
+        Laps laps =
+            find_laps(around, borders, {options.max_step_mm, options.joint == JointChoice::lap, options.min_length_mm});
+        result.registration_mm = std::max(result.registration_mm, laps.registration_mm);
+        of_laps = std::move(laps.tracks);
+        take(result, std::move(laps.seams), std::move(laps.remarks));
+    }
+    const bool fillet = asked(options, JointChoice::fillet);
+    Folds folds =
+        find_folds(around, fillet || options.joint == JointChoice::saddle, asks_for_corners(options), options, of_laps);
+    result.registration_mm = std::max(result.registration_mm, folds.registration_mm);
+    if (options.joint == JointChoice::saddle) {
+        std::erase_if(folds.seams, [](const Seam& seam) { return seam.kind != JointKind::saddle; });
+    }
+    take(result, std::move(folds.seams), std::move(folds.remarks));
+    if (fillet) {
+        take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});
+    }
+}
+
+void tell_what_else_there_is(Extraction& result, const Scan& scan, ExtractOptions options) {
+    const std::string asked_for(kJointChoiceNames[static_cast<std::size_t>(options.joint)]);
+    options.joint = JointChoice::automatic;
+    for (const Seam& seam : extract(scan, options).seams) {
+        result.remarks.push_back("extract.joint says " + asked_for + ", but the scan shows a " +
+                                 std::string(name(seam.kind)) + ": " + seam.kind_reason);
+    }
+}
+
 }  // namespace
 
 Fields describe(ExtractOptions& o) {
     return {
-        {"joint", choice(o.joint, kJointChoiceNames), "joint kind to look for; auto: by what is seen"},
+        {"joint", choice(o.joint, kJointChoiceNames),
+         "joint kind to look for; auto: by what is seen, each seam with a confidence and a reason"},
         {"convex", &o.convex, "auto also reports convex edges, as corner joints: every block has some"},
         {"max_thickness_mm", &o.max_thickness_mm,
          "a convex edge with a face no wider than this is a plate's rim, no corner joint; 0: a third of the other face",
+         at_least(0)},
+        {"max_step_mm", &o.max_step_mm,
+         "highest step between parallel faces that is taken for machined; a higher one whose upper plate is three "
+         "times "
+         "as wide as thick, on a part that shows a side of its own, is a lap",
          at_least(0)},
         {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
         {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
 }
 
 Extraction extract(const Scan& scan, const ExtractOptions& options) {
-    if (options.joint != JointChoice::automatic && options.joint != JointChoice::fillet &&
-        options.joint != JointChoice::corner && options.joint != JointChoice::v_groove) {
-        throw InputError(
-            "extract: joint kind '" + std::string(kJointChoiceNames[static_cast<std::size_t>(options.joint)]) +
-            "' is not followed yet; fillet, v-groove and corner are; set extract.joint to auto or one of these");
-    }
     if (scan.points.size() < kLeastPoints) {
         throw InputError("extract: the scan has " + std::to_string(scan.points.size()) + " points; at least " +
                          std::to_string(kLeastPoints) +
@@ -119,24 +167,9 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
                             options.station_mm > 0 ? options.station_mm : station_distance(scale, scan.points.size())};
     const Around around{scan, grid, field, surfels, creases, following};
 
-    Grooves grooves = find_grooves(around, options.min_length_mm);
-    if (asked(options, JointChoice::v_groove)) {
-        if (grooves.seams.empty() && options.joint == JointChoice::v_groove) {
-            result.remarks.emplace_back("no V-groove: no two bevels face each other between level tops");
-        }
-        result.registration_mm = grooves.registration_mm;
-        leave_out(creases, grooves.claimed);
-        take(result, std::move(grooves.seams), std::move(grooves.remarks));
-    } else {
-        for (const Seam& groove : grooves.seams) {
-            result.remarks.push_back("the scan shows a V-groove, which was not asked for: " + groove.kind_reason);
-        }
-    }
-    Folds folds = find_folds(around, asked(options, JointChoice::fillet), asks_for_corners(options), options);
-    result.registration_mm = std::max(result.registration_mm, folds.registration_mm);
-    take(result, std::move(folds.seams), std::move(folds.remarks));
-    if (asked(options, JointChoice::fillet)) {
-        take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});
+    find_joints(result, around, creases, options);
+    if (options.joint != JointChoice::automatic && result.seams.empty()) {
+        tell_what_else_there_is(result, scan, options);
     }
     std::stable_sort(result.seams.begin(), result.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });

@@ -35,9 +35,18 @@ std::vector<Crease> seeds_of(const std::vector<Crease>& creases, bool convex) {
     return seeds;
 }
 
-std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>& seeds) {
-    std::vector<Track> tracks;
+std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>& seeds,
+                              const std::vector<Track>& taken) {
+    std::vector<Track> tracks = taken;
     std::vector<char> used(seeds.size(), 0);
+    const auto use = [&](const Track& track, std::size_t from) {
+        for (std::size_t j = from; j < seeds.size(); ++j) {
+            used[j] = used[j] || lies_on(track, {seeds[j].p, seeds[j].n1, seeds[j].n2}, 2 * tracker.step);
+        }
+    };
+    for (const Track& track : taken) {
+        use(track, 0);
+    }
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         if (used[i]) {
             continue;
@@ -47,39 +56,11 @@ std::vector<Track> follow_all(const Tracker& tracker, const std::vector<Crease>&
             continue;
         }
         // Seeds along the new track have nothing more to tell.
-        for (std::size_t j = i + 1; j < seeds.size(); ++j) {
-            used[j] = used[j] || lies_on(*track, {seeds[j].p, seeds[j].n1, seeds[j].n2}, 2 * tracker.step);
-        }
+        use(*track, i + 1);
         tracks.push_back(std::move(*track));
     }
+    tracks.erase(tracks.begin(), tracks.begin() + static_cast<std::ptrdiff_t>(taken.size()));
     return tracks;
-}
-
-// The joints among the tracks; of the others a remark says why they are none.
-std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length,
-                              std::vector<std::string>& remarks) {
-    std::vector<Fold> joints;
-    for (const Track& track : tracks) {
-        const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
-        const double least = min_length > 0 ? min_length : kLeastLength * spacing;
-        double found = length_of(track.points);
-        if (found >= least) {
-            auto way = measure_track(tracker, track);
-            if (!way) {
-                remarks.push_back("a crease of " + fixed(found, 1) +
-                                  " mm was left out: its flanks are too narrow or too rough for a joint");
-                continue;
-            }
-            found = length_of(*way);
-            if (found >= least) {
-                joints.push_back({std::move(*way), track.closed});
-                continue;
-            }
-        }
-        remarks.push_back("a joint of " + fixed(found, 1) + " mm was left out: shorter than " + fixed(least, 1) +
-                          " mm");
-    }
-    return joints;
 }
 
 // A pipe on another pipe; or a pipe that the seam goes all round, on a plate, cone or sphere. The explanation of both
@@ -125,7 +106,41 @@ Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
-Folds find_folds(const Around& around, bool concave, bool convex, const ExtractOptions& options) {
+std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length_mm,
+                              std::vector<std::string>& remarks) {
+    std::vector<Fold> joints;
+    for (const Track& track : tracks) {
+        const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
+        const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * spacing;
+        double found = length_of(track.points);
+        if (found >= least) {
+            auto way = measure_track(tracker, track);
+            if (!way) {
+                remarks.push_back("a crease of " + fixed(found, 1) +
+                                  " mm was left out: its flanks are too narrow or too rough for a joint");
+                continue;
+            }
+            found = length_of(*way);
+            if (found >= least) {
+                joints.push_back({std::move(*way), track.closed});
+                continue;
+            }
+        }
+        remarks.push_back("a joint of " + fixed(found, 1) + " mm was left out: shorter than " + fixed(least, 1) +
+                          " mm");
+    }
+    return joints;
+}
+
+double registration_that_counts(const Tracker& tracker, double registration_mm) {
+    // 68 % of Student's t with f degrees of freedom lie within 1 + 0.6 / f, and two flanks see each view in two
+    // directions.
+    const double freedom = 2 * std::max(1.0, static_cast<double>(tracker.view_starts.size()) - 1);
+    return registration_mm * (1 + 0.6 / freedom);
+}
+
+Folds find_folds(const Around& around, bool concave, bool convex, const ExtractOptions& options,
+                 const std::vector<Track>& taken) {
     const Tracker& following = around.following;
     Folds result;
     std::vector<Fold> folds;
@@ -133,7 +148,7 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
         if (inside_out ? !convex : !concave) {
             continue;
         }
-        const auto tracks = join_tracks(following, follow_all(following, seeds_of(around.creases, inside_out)));
+        const auto tracks = join_tracks(following, follow_all(following, seeds_of(around.creases, inside_out), taken));
         std::vector<Fold> joints = measure_all(following, tracks, options.min_length_mm, result.remarks);
         if (inside_out) {
             leave_out_rims(around, options.max_thickness_mm, joints, result.remarks);
@@ -151,10 +166,7 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
         add_differences(differences, fold.way);
     }
     result.registration_mm = registration_of(differences);
-    // Few views tell their scatter but roughly: 68 % of Student's t with f degrees of freedom lie within 1 + 0.6 / f,
-    // and two flanks see each view in two directions.
-    const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1),
-                 registration = result.registration_mm * (1 + 0.6 / freedom);
+    const double registration = registration_that_counts(following, result.registration_mm);
     for (Fold& fold : folds) {
         fold.surfaces = settle_on_whole_flanks(measuring, registration, fold.way);
         result.seams.push_back(seam_of(fold, around.scan.origin_mm));

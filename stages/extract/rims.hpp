@@ -11,7 +11,7 @@ namespace seampath::detail {
 struct Fold {
     std::vector<TrackPoint> way;
     bool closed = false;
-    bool convex = false;  ///< `way` is inside out: its normals point into the material
+    bool convex = false;         ///< `way` is inside out: its normals point into the material
     SeamSurfaces surfaces = {};  ///< in the frame of `way`
 };
 

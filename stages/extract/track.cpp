@@ -134,7 +134,7 @@ End advance(const Tracker& tracker, std::vector<TrackPoint>& way, double directi
 }  // namespace
 
 std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) const {
-    const auto fit = settle_section(grid, scale_at(guess), guess, window_at(guess), rounds);
+    const auto fit = settle_section(grid, scale_at(guess), guess, windows_at(guess), rounds);
     if (!fit) {
         return std::nullopt;
     }
@@ -144,7 +144,7 @@ std::optional<TrackPoint> Tracker::measure(const Section& guess, int rounds) con
     point.sigma = fit->sigma;
     point.bend = fit->bend;
     point.along = std::min(fit->flank[0].window.along, fit->flank[1].window.along);
-    point.away = std::min(fit->flank[0].window.away, fit->flank[1].window.away);
+    point.away = wall ? fit->flank[0].window.away : std::min(fit->flank[0].window.away, fit->flank[1].window.away);
     point.rough =
         std::max(fit->flank[0].fit.scale() / fit->flank[0].noise, fit->flank[1].fit.scale() / fit->flank[1].noise);
     for (int k = 0; k < 2; ++k) {

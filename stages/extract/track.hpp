@@ -21,12 +21,12 @@ struct FlankSample {
 /// One measured place of a seam that is being followed.
 struct TrackPoint {
     Section section;
-    Eigen::Vector3d t{0, 0, 0};        ///< unit, direction of travel, n1 x n2
-    double sigma = 0;                  ///< mm
-    double bend = 0;                   ///< rad
-    double along = 0;                  ///< mm, half length over which the flanks were fitted
-    double away = 0;                   ///< mm, how far from the seam the narrower flank is one smooth surface
-    double rough = 0;                  ///< residual scale of the rougher flank, in its noises
+    Eigen::Vector3d t{0, 0, 0};  ///< unit, direction of travel, n1 x n2
+    double sigma = 0;            ///< mm
+    double bend = 0;             ///< rad
+    double along = 0;            ///< mm, half length over which the flanks were fitted
+    double away = 0;             ///< mm, how far from the seam the narrower flank is one smooth surface; not of a wall
+    double rough = 0;            ///< residual scale of the rougher flank, in its noises
     double flank_scale[2] = {0, 0};    ///< mm, robust 1-sigma of each flank's points about its surface
     double flank_sigma[2] = {0, 0};    ///< mm, of the place across each flank
     std::vector<FlankSample> slab[2];  ///< points of each flank within half a step of this place
@@ -47,12 +47,18 @@ struct Tracker {
     SectionWindow (*window_of)(const ScanScale&);  ///< to follow with, or to measure with
     double step = 0;                               ///< mm between track points
     double reach_further = 0;                      ///< mm by which windows are longer along the seam
+    std::optional<double> wall = {};               ///< mm, height of the second flank where it is a plate's edge
 
     ScanScale scale_at(const Section& place) const { return field.at(place.p); }
     SectionWindow window_at(const Section& place) const {
         SectionWindow window = window_of(scale_at(place));
         window.along += reach_further;
         return window;
+    }
+
+    SectionWindows windows_at(const Section& place) const {
+        const SectionWindow window = window_at(place);
+        return wall ? beside_wall(scale_at(place), window, *wall) : SectionWindows(window, window);
     }
 
     std::optional<TrackPoint> measure(const Section& guess, int rounds) const;

@@ -36,11 +36,12 @@ using FirstLook = std::array<Flank, 2>;
 // flank, but never reaches the other flank. After it each flank is carried on, and ends where it comes near to the
 // other: the seam may bend within the window.
 std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale, const SectionFrame& f,
-                                  const SectionWindow& w, const FirstLook* look) {
+                                  const SectionWindows& windows, const FirstLook* look) {
     std::array<FlankPoints, 2> samples;
     const double sine = f.n[0].cross(f.n[1]).norm(), opening = std::numbers::pi - std::atan2(sine, f.n[0].dot(f.n[1]));
     const double slope = std::tan(std::min(0.3 * opening, kGateSlope)), base = 4 * scale.noise + scale.spacing;
-    const double nearest = look ? -w.away : w.band;
+    const double along = windows[0].along;
+    const auto nearest = [&](std::size_t k) { return look ? -windows[k].away : windows[k].band; };
     const auto wanted = [&](std::size_t k, const Eigen::Vector3d& v, double u, double s, double z) {
         if (!look) {
             return std::abs(z) <= base + slope * u;
@@ -53,13 +54,13 @@ std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale,
         const std::size_t other = 1 - k;
         const double other_u = foot.dot(f.d[other]);
         return residual((*look)[other], other_u, s, foot.dot(f.n[other])) >=
-               std::max(w.band * sine, continuation_doubt((*look)[other], other_u, s));
+               std::max(windows[other].band * sine, continuation_doubt((*look)[other], other_u, s));
     };
     // The box of the two flank rectangles.
     Eigen::Vector3d low = f.p, high = f.p;
     for (std::size_t k = 0; k < 2; ++k) {
-        for (const double u : {nearest, w.away}) {
-            for (const double s : {-w.along, w.along}) {
+        for (const double u : {nearest(k), windows[k].away}) {
+            for (const double s : {-along, along}) {
                 for (const double side : {-1.0, 1.0}) {
                     const double z =
                         look ? std::abs(residual((*look)[k], u, s, 0)) + gate((*look)[k], u, s) : base + slope * u;
@@ -74,12 +75,12 @@ std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale,
         for (const Eigen::Vector3f& q : grid.points(cell)) {
             const Eigen::Vector3d v = q.cast<double>() - f.p;
             const double s = v.dot(f.t);
-            if (std::abs(s) > w.along) {
+            if (std::abs(s) > along) {
                 continue;
             }
             for (std::size_t k = 0; k < 2; ++k) {
                 const double u = v.dot(f.d[k]), z = v.dot(f.n[k]);
-                if (u >= nearest && u <= w.away && wanted(k, v, u, s, z)) {
+                if (u >= nearest(k) && u <= windows[k].away && wanted(k, v, u, s, z)) {
                     samples[k].points.push_back(
                         {static_cast<float>(u), static_cast<float>(s), static_cast<float>(z), lot_of(q)});
                 }
@@ -92,18 +93,21 @@ std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale,
 }
 
 // As much as bends and corners allow to be seen without knowing of them.
-SectionWindow first_window(const ScanScale& scale, const SectionWindow& window) {
+SectionWindows first_windows(const ScanScale& scale, const SectionWindows& windows) {
     const SectionWindow follow = following_window(scale);
-    return {std::min(window.along, follow.along), std::min(window.away, follow.away), window.band};
+    const auto first = [&](const SectionWindow& w) {
+        return SectionWindow{std::min(w.along, follow.along), std::min(w.away, follow.away), w.band};
+    };
+    return {first(windows[0]), first(windows[1])};
 }
 
 std::optional<FirstLook> first_look(const PointGrid& grid, const ScanScale& scale, const SectionFrame& f,
-                                    const SectionWindow& window) {
-    const SectionWindow near = first_window(scale, window);
+                                    const SectionWindows& windows) {
+    const SectionWindows near = first_windows(scale, windows);
     const auto samples = gather(grid, scale, f, near, nullptr);
     FirstLook look;
     for (std::size_t k = 0; k < 2; ++k) {
-        auto flank = fit_flank(samples[k], scale, near);
+        auto flank = fit_flank(samples[k], scale, near[k]);
         if (!flank) {
             return std::nullopt;
         }
@@ -142,22 +146,32 @@ std::optional<Eigen::Vector2d> meet(const SectionFrame& f, const Flank (&flank)[
 
 }  // namespace
 
+SectionWindows beside_wall(const ScanScale& scale, const SectionWindow& window, double height) {
+    constexpr double kLeastBand = 1.5, kLeastNoises = 3;  // what corners blur, in point distances and in noises
+    const double least = std::max(kLeastBand * scale.spacing, kLeastNoises * scale.noise);
+    const double band = std::min(window.band, std::max(least, height / 5));
+    return {window, {window.along, std::min(window.away, height - band), band}};
+}
+
 std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
-                                      const SectionWindow& window) {
+                                      const SectionWindows& windows) {
     const auto frame = frame_of(guess);
     if (!frame) {
         return std::nullopt;
     }
     const SectionFrame& f = *frame;
-    auto look = first_look(grid, scale, f, window);
+    auto look = first_look(grid, scale, f, windows);
     if (!look) {
         return std::nullopt;
     }
-    const SectionWindow seen = first_window(scale, window);
-    if (window.along > seen.along || window.away > seen.away) {
-        const auto samples = gather(grid, scale, f, window, &*look);
+    const SectionWindows seen = first_windows(scale, windows);
+    const auto wider = [&](std::size_t k) {
+        return windows[k].along > seen[k].along || windows[k].away > seen[k].away;
+    };
+    if (wider(0) || wider(1)) {
+        const auto samples = gather(grid, scale, f, windows, &*look);
         for (std::size_t k = 0; k < 2; ++k) {
-            widen((*look)[k], samples[k], scale, window);
+            widen((*look)[k], samples[k], scale, windows[k]);
         }
     }
     SectionFit result;
@@ -166,7 +180,7 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
         result.flank[k] = std::move((*look)[k]);
         settle_flank(result.flank[k], scale);
     }
-    const auto met = meet(f, result.flank, window.away);
+    const auto met = meet(f, result.flank, std::max(windows[0].away, windows[1].away));
     if (!met) {
         return std::nullopt;
     }
@@ -190,14 +204,14 @@ std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& sc
 }
 
 std::optional<SectionFit> settle_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
-                                         const SectionWindow& window, int rounds) {
-    auto fit = fit_section(grid, scale, guess, window);
+                                         const SectionWindows& windows, int rounds) {
+    auto fit = fit_section(grid, scale, guess, windows);
     const Eigen::Vector3d start = guess.p;
     for (int round = 1; round < rounds && fit; ++round) {
         const double before = fit->shift;
         // Keep to the section plane of the first guess, so that the point does not wander along the seam.
         Section next = fit->section;
-        fit = fit_section(grid, scale, next, window);
+        fit = fit_section(grid, scale, next, windows);
         if (fit && fit->shift < std::max(0.1 * fit->sigma, 1e-3 * scale.noise)) {
             break;
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include <Eigen/Core>
@@ -34,13 +35,35 @@ struct SectionFit {
     double sigma = 0;  ///< mm, root of the variance of p across the seam
 };
 
+/// One of each flank. Both reach as far along the seam.
+class SectionWindows {
+public:
+    SectionWindows(const SectionWindow& first, const SectionWindow& second) : of_{first, second} {}
+    const SectionWindow& operator[](std::size_t k) const { return of_[k]; }
+
+private:
+    SectionWindow of_[2];
+};
+
+/// The windows of a joint whose second flank is a wall only `height` mm high: of the wall, what lies clear of its foot
+/// and of its top.
+SectionWindows beside_wall(const ScanScale& scale, const SectionWindow& window, double height);
+
 /// Fits both flanks around `guess`; empty when one of them has too few points, or they do not meet within the window.
 std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
-                                      const SectionWindow& window);
+                                      const SectionWindows& windows);
+inline std::optional<SectionFit> fit_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
+                                             const SectionWindow& window) {
+    return fit_section(grid, scale, guess, SectionWindows(window, window));
+}
 
 /// Repeats fit_section from its own result until the point moves by less than a tenth of its sigma; at most `rounds`
 /// times.
 std::optional<SectionFit> settle_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
-                                         const SectionWindow& window, int rounds);
+                                         const SectionWindows& windows, int rounds);
+inline std::optional<SectionFit> settle_section(const PointGrid& grid, const ScanScale& scale, const Section& guess,
+                                                const SectionWindow& window, int rounds) {
+    return settle_section(grid, scale, guess, SectionWindows(window, window), rounds);
+}
 
 }  // namespace seampath

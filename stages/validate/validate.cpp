@@ -1,13 +1,16 @@
 #include "stages/validate/validate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "stages/error.hpp"
+#include "stages/geometry/border_section.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/section.hpp"
+#include "stages/geometry/step_height.hpp"
 #include "stages/geometry/views.hpp"
 #include "stages/text.hpp"
 #include "stages/validate/groove_deviation.hpp"
@@ -58,6 +61,81 @@ double signed_distance(const Flank& flank) {
     const auto& c = flank.fit.coefficients();
     const double du = c[1] / flank.window.away, ds = c[2] / flank.window.along;
     return -c[0] / std::sqrt(1 + du * du + ds * ds);
+}
+
+/// The raw scan near the model.
+struct Ground {
+    const Eigen::Vector3d& origin;
+    const PointGrid& grid;
+    const std::vector<std::size_t>& views;
+    const ScanScale& scale;
+    const SectionWindow& window;
+};
+
+using Densities = std::array<double, 2>;  // of points on both surfaces at a sample, per mm^2; 0: not measured
+
+// By the line in which both flanks meet. A corner is measured inside out: from within the material it is concave. Of a
+// lap's wall, what lies between its foot and its top.
+Densities measure_flanks(const Ground& ground, const SeamModel& model, const std::optional<double>& wall,
+                         DeviationSample& sample) {
+    const double outwards = model.kind == JointKind::corner ? -1 : 1;
+    const FlankSample flanks = flanks_at(model, sample.station_mm);
+    const SectionWindows windows =
+        wall ? beside_wall(ground.scale, ground.window, *wall) : SectionWindows(ground.window, ground.window);
+    const auto fit = fit_section(ground.grid, ground.scale,
+                                 {sample.p - ground.origin, outwards * flanks.n1, outwards * flanks.n2}, windows);
+    if (!fit) {
+        return {0, 0};
+    }
+    sample.flank1_mm = outwards * signed_distance(fit->flank[0]);
+    sample.flank2_mm = outwards * signed_distance(fit->flank[1]);
+    sample.distance_mm = fit->shift;
+    sample.sigma_mm = fit->sigma;
+    sample.covered = true;
+    return {fit->flank[0].slab_points, fit->flank[1].slab_points};
+}
+
+// By the middle of the two top edges: how far the model lies above it stands for both flanks.
+Densities measure_butt(const Ground& ground, const SeamModel& model, const ArcLength& arc, DeviationSample& sample) {
+    const FlankSample flanks = flanks_at(model, sample.station_mm);
+    const Eigen::Vector3d t = tangent(model.curve, arc.parameter(sample.station_mm)), up = flanks.n1 + flanks.n2;
+    const Eigen::Vector3d n = (up - up.dot(t) * t).normalized();
+    const double half = std::min(0.5 * ground.window.along, 0.25 * arc.length());
+    const auto turned = [&](double station) {
+        return tangent(model.curve, arc.parameter(std::clamp(station, 0.0, arc.length())));
+    };
+    const double from = std::max(0.0, sample.station_mm - half), to = std::min(arc.length(), sample.station_mm + half);
+    const ViewedPoints points{ground.grid, ground.views};
+    GapPlace place{sample.p - ground.origin, t, n, 0, 0, (turned(to) - turned(from)).dot(n.cross(t)) / (to - from)};
+    const auto guess = find_gap(points, ground.scale, place, 0.3 * ground.window.along);
+    const auto fit =
+        guess ? settle_gap(points, ground.scale, *guess, within_bend(ground.window, guess->bend, ground.scale), 2)
+              : std::nullopt;
+    if (!fit) {
+        return {0, 0};
+    }
+    Eigen::Vector3d off = place.p - fit->place.p;
+    off -= off.dot(t) * t;
+    sample.flank1_mm = sample.flank2_mm = off.dot(n);
+    sample.distance_mm = off.norm();
+    sample.sigma_mm = fit->sigma;
+    sample.covered = true;
+    return {fit->support[0], fit->support[1]};
+}
+
+// Of the plate on top, along the seam.
+std::optional<double> wall_height(const Ground& ground, const SeamModel& model, const ArcLength& arc) {
+    constexpr int kPlaces = 15;
+    std::vector<double> heights;
+    for (int i = 0; i < kPlaces; ++i) {
+        const double station = arc.length() * (i + 0.5) / kPlaces;
+        const FlankSample flanks = flanks_at(model, station);
+        const Eigen::Vector3d p = position(model.curve, arc.parameter(station)) - ground.origin;
+        if (const auto height = step_height(ground.grid, ground.scale, p, flanks.n1, flanks.n2)) {
+            heights.push_back(*height);
+        }
+    }
+    return heights.empty() ? std::nullopt : std::optional(quantile(heights, 0.5));
 }
 
 void summarise(Deviation& result, const ValidateOptions& options) {
@@ -117,8 +195,9 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     result.tolerance_mm =
         options.tolerance_mm > 0 ? options.tolerance_mm : std::max(kLeastTolerance, kNoiseTolerance * scale.noise);
     result.samples.resize(count);
-    // A corner is measured inside out: from within the material it is concave.
-    const double outwards = model.kind == JointKind::corner ? -1 : 1;
+    // An organised cloud is one view.
+    const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
+    const Ground ground{scan.origin_mm, grid, views, scale, window};
     std::vector<double> density[2];
     density[0].assign(count, 0);
     density[1].assign(count, 0);
@@ -128,25 +207,16 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
         sample.p = position(model.curve, arc.parameter(sample.station_mm));
     }
     if (model.kind == JointKind::v_groove) {
-        // An organised cloud is one view.
-        const std::vector<std::size_t> views =
-            scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
         detail::measure_groove_samples(model, arc, scan.origin_mm, grid, views, scale, result.samples, density);
     } else {
+        const std::optional<double> wall =
+            model.kind == JointKind::lap ? wall_height(ground, model, arc) : std::nullopt;
         parallel_for(count, 4, [&](std::size_t i) {
             DeviationSample& sample = result.samples[i];
-            const FlankSample flanks = flanks_at(model, sample.station_mm);
-            const auto fit = fit_section(
-                grid, scale, {sample.p - scan.origin_mm, outwards * flanks.n1, outwards * flanks.n2}, window);
-            if (fit) {
-                sample.flank1_mm = outwards * signed_distance(fit->flank[0]);
-                sample.flank2_mm = outwards * signed_distance(fit->flank[1]);
-                sample.distance_mm = fit->shift;
-                sample.sigma_mm = fit->sigma;
-                sample.covered = true;
-                density[0][i] = fit->flank[0].slab_points;
-                density[1][i] = fit->flank[1].slab_points;
-            }
+            const auto seen = model.kind == JointKind::butt ? measure_butt(ground, model, arc, sample)
+                                                            : measure_flanks(ground, model, wall, sample);
+            density[0][i] = seen[0];
+            density[1][i] = seen[1];
         });
     }
     std::vector<double> sigma;

@@ -158,9 +158,9 @@ TEST(NoMeasurement, WhereAllPointsAreInOnePlace) {
 
 TEST(NoMeasurement, OfKindsThatAreNotFollowedYet) {
     ExtractOptions options;
-    options.joint = JointChoice::lap;
+    options.joint = JointChoice::saddle;
     EXPECT_THAT([&] { extract(corner_scan(10), options); },
-                ThrowsMessage<InputError>(StartsWith("extract: joint kind 'lap' is not followed yet")));
+                ThrowsMessage<InputError>(StartsWith("extract: joint kind 'saddle' is not followed yet")));
 }
 
 TEST(Degenerate, ExactCornerIsFound) {

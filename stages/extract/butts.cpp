@@ -1,0 +1,409 @@
+#include "stages/extract/butts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "stages/extract/ends.hpp"
+#include "stages/geometry/border_section.hpp"
+#include "stages/geometry/parallel.hpp"
+#include "stages/geometry/robust.hpp"
+#include "stages/text.hpp"
+
+namespace seampath::detail {
+namespace {
+
+constexpr double kLeastGap = 1.1;  // point distances; what is narrower is not seen, and may be a step's wall
+constexpr double kMostTurn = 20 * std::numbers::pi / 180;  // of the direction, per step of following
+constexpr double kMostJump = 25;                           // mm without a gap to be seen, which tacks bridge
+constexpr double kLeastLength = 40;                        // of a seam, in point distances
+constexpr double kUnseen = 0.2;  // noises by which an edge's place is doubtful beyond what its witnesses scatter
+constexpr std::size_t kMostSteps = 20000;
+
+struct Station {
+    GapFit fit;
+    bool modelled = false;
+};
+struct Way {
+    std::vector<Station> at;
+    bool closed = false;
+};
+
+class Follower {
+public:
+    explicit Follower(const Around& around)
+        : around_(around), scan_{around.grid, around.following.view_starts}, step_(2 * around.following.step) {}
+
+    double step() const { return step_; }
+    const ViewedPoints& scan() const { return scan_; }
+    ScanScale scale_at(const Eigen::Vector3d& p) const { return around_.field.at(p); }
+
+    std::optional<GapFit> measure(const GapPlace& guess, int rounds) const {
+        const ScanScale scale = scale_at(guess.p);
+        auto fit = settle_gap(scan_, scale, guess, following_window(scale), rounds);
+        return fit && is_gap(*fit, scale) ? fit : std::nullopt;
+    }
+
+    bool is_gap(const GapFit& fit, const ScanScale& scale) const {
+        const auto& [place, n1, n2, gap, mismatch, sigma, shift, views, support, walled] = fit;
+        return place.gap > kLeastGap * scale.spacing && place.gap < kMostGap &&
+               std::abs(place.mismatch) < kMostMismatch && n1.dot(n2) > std::cos(kMostTurn) &&
+               std::min(support[0], support[1]) > 0;
+    }
+
+    // Both ways from a seed, until the gap is no longer seen or comes back to where it began.
+    Way follow(const GapFit& seed) const {
+        Way way{{{seed}}, false};
+        for (const double direction : {1.0, -1.0}) {
+            way.closed = way.closed || advance(way.at, direction);
+            std::reverse(way.at.begin(), way.at.end());
+        }
+        return way;
+    }
+
+private:
+    // Extends the way at its back; true when it has come back to its front.
+    bool advance(std::vector<Station>& way, double direction) const {
+        while (way.size() < kMostSteps) {
+            const auto next = beyond(way, direction);
+            if (!next) {
+                return false;
+            }
+            const Station& last = way.back();
+            const double jump = (next->place.p - last.fit.place.p).norm();
+            const int between = static_cast<int>(std::lround(jump / step_));
+            for (int i = 1; i < between; ++i) {
+                way.push_back(mixed(last, *next, static_cast<double>(i) / between));
+            }
+            way.push_back({*next});
+            const GapPlace& first = way.front().fit.place;
+            if (way.size() > 20 && (next->place.p - first.p).norm() < step_ && next->place.t.dot(first.t) > 0.8) {
+                way.pop_back();
+                return true;
+            }
+        }
+        return false;
+    }
+
+    static Station mixed(const Station& a, const GapFit& b, double x) {
+        Station station{a.fit, true};
+        GapPlace& place = station.fit.place;
+        place.p = (1 - x) * a.fit.place.p + x * b.place.p;
+        place.t = ((1 - x) * a.fit.place.t + x * b.place.t).normalized();
+        place.n = ((1 - x) * a.fit.place.n + x * b.place.n).normalized();
+        return station;
+    }
+
+    // The next measured place; where a tack hides the gap, one behind it.
+    std::optional<GapFit> beyond(const std::vector<Station>& way, double direction) const {
+        const GapPlace& last = way.back().fit.place;
+        Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // of the direction, per mm
+        if (way.size() > 8) {
+            const GapPlace& before = way[way.size() - 8].fit.place;
+            turn = (last.t - before.t) / std::max(step_, (last.p - before.p).norm());
+        }
+        for (double ahead = step_; ahead <= kMostJump; ahead += step_) {
+            GapPlace guess = last;
+            guess.p += ahead * direction * last.t + 0.5 * ahead * ahead * turn;
+            const auto fit = measure(guess, 2);
+            const double off = fit ? (fit->place.p - guess.p).norm() : 0;
+            if (fit && off < 0.25 * last.gap + 0.3 * step_ + 0.02 * ahead &&
+                fit->place.t.dot(last.t) > std::cos(kMostTurn) && fit->place.gap > 0.4 * last.gap &&
+                fit->place.gap < 2.5 * last.gap) {
+                return fit;
+            }
+        }
+        return std::nullopt;
+    }
+
+    const Around& around_;
+    ViewedPoints scan_;
+    double step_;
+};
+
+std::optional<GapPlace> place_of(const Around& around, const Border& border) {
+    const auto other = sheet_beyond(around, border, kMostGap, -kMostMismatch, kMostMismatch);
+    if (!other) {
+        return std::nullopt;
+    }
+    // The sheet that ends is plate 1, on the right of travel. The narrowest gaps are not yet told from none.
+    const double gap = std::max(other->gap, kLeastGap * around.field.at(border.p).spacing);
+    return GapPlace{border.p + 0.5 * gap * border.out + 0.5 * other->height * border.n,
+                    border.out.cross(border.n),
+                    border.n,
+                    gap,
+                    other->height,
+                    0};
+}
+
+bool lies_on(const Way& way, const Eigen::Vector3d& p, double reach) {
+    return std::any_of(way.at.begin(), way.at.end(),
+                       [&](const Station& s) { return (s.fit.place.p - p).norm() < reach; });
+}
+
+std::vector<Way> follow_all(const Around& around, const Follower& follower, const std::vector<Border>& borders) {
+    std::vector<Way> ways;
+    for (const Border& border : borders) {
+        const auto taken = [&](const Eigen::Vector3d& p) {
+            return std::any_of(ways.begin(), ways.end(),
+                               [&](const Way& way) { return lies_on(way, p, kMostGap + 2 * follower.step()); });
+        };
+        if (taken(border.p)) {
+            continue;
+        }
+        const auto place = place_of(around, border);
+        const auto seed = place ? follower.measure(*place, 4) : std::nullopt;
+        if (seed && (seed->place.p - place->p).norm() < kMostGap && !taken(seed->place.p)) {
+            ways.push_back(follower.follow(*seed));
+        }
+    }
+    return ways;
+}
+
+// Places at equal distances along the way.
+std::vector<Station> equal_steps(const Way& way, double step) {
+    std::vector<Station> from = way.at;
+    if (way.closed) {
+        from.push_back(from.front());
+    }
+    std::vector<double> station(from.size(), 0);
+    for (std::size_t i = 1; i < from.size(); ++i) {
+        station[i] = station[i - 1] + (from[i].fit.place.p - from[i - 1].fit.place.p).norm();
+    }
+    const auto count = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(station.back() / step)));
+    std::vector<Station> places;
+    for (std::size_t k = 0, i = 1; k < count + (way.closed ? 0 : 1); ++k) {
+        const double s = station.back() * static_cast<double>(k) / static_cast<double>(count);
+        while (i + 1 < from.size() && station[i] < s) {
+            ++i;
+        }
+        const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
+        const GapPlace &a = from[i - 1].fit.place, &b = from[i].fit.place;
+        Station place = x < 0.5 ? from[i - 1] : from[i];
+        place.fit.place.p = (1 - x) * a.p + x * b.p;
+        place.fit.place.t = ((1 - x) * a.t + x * b.t).normalized();
+        place.fit.place.n = ((1 - x) * a.n + x * b.n).normalized();
+        place.fit.place.gap = (1 - x) * a.gap + x * b.gap;
+        place.fit.place.mismatch = (1 - x) * a.mismatch + x * b.mismatch;
+        places.push_back(place);
+    }
+    return places;
+}
+
+// Curvature of the way at place i, by the places `reach` mm before and behind.
+double bend_at(const std::vector<Station>& places, bool closed, std::size_t i, double reach, double step) {
+    const auto n = static_cast<std::ptrdiff_t>(places.size());
+    auto half = static_cast<std::ptrdiff_t>(std::lround(reach / step));
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    half = std::max<std::ptrdiff_t>(2, std::min(half, (n - 1) / 2));
+    const std::ptrdiff_t middle = closed ? at : std::clamp(at, half, n - 1 - half);
+    const auto place = [&](std::ptrdiff_t k) -> const GapPlace& {
+        return places[static_cast<std::size_t>((k + n) % n)].fit.place;
+    };
+    const GapPlace& here = place(middle);
+    const Eigen::Vector3d a = place(middle - half).p - here.p, b = place(middle + half).p - here.p;
+    return here.n.cross(here.t).dot(a + b) / (0.5 * (a.squaredNorm() + b.squaredNorm()));
+}
+
+std::vector<Station> measure_places(const Follower& follower, std::vector<Station> places, bool closed, double step) {
+    std::vector<std::optional<GapFit>> measured(places.size());
+    parallel_for(places.size(), 4, [&](std::size_t i) {
+        GapPlace guess = places[i].fit.place;
+        const ScanScale scale = follower.scale_at(guess.p);
+        guess.bend = bend_at(places, closed, i, measuring_window(scale).along, step);
+        SectionWindow window = within_bend(measuring_window(scale), guess.bend, scale);
+        if (!closed) {
+            // Near its ends a window sees one side only: it reaches further that way.
+            const double to_end = step * static_cast<double>(std::min(i, places.size() - 1 - i));
+            window.along += std::max(0.0, window.along - to_end);
+        }
+        auto fit = settle_gap(follower.scan(), scale, guess, window, 2);
+        if (fit && follower.is_gap(*fit, scale) && (fit->place.p - guess.p).norm() < 0.5 * guess.gap + scale.spacing) {
+            measured[i] = std::move(fit);
+        }
+    });
+    std::vector<Station> kept;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (measured[i]) {
+            kept.push_back({*measured[i], false});
+        } else if (places[i].modelled) {
+            kept.push_back(places[i]);
+        }
+    }
+    return kept;
+}
+
+// How far the shorter top reaches at the gap, beyond a place, along `ahead`.
+double reach_ahead(const Follower& follower, const GapPlace& place, const Eigen::Vector3d& ahead, double look) {
+    const ScanScale scale = follower.scale_at(place.p);
+    const Eigen::Vector3d left = place.n.cross(place.t);
+    double reach = look;
+    for (const double side : {-1.0, 1.0}) {
+        std::vector<double> s;
+        double density = 0;
+        follower.scan().grid.for_points_in_ball(
+            place.p, look + 6 * scale.spacing, [&](const Eigen::Vector3f& q, double) {
+                const Eigen::Vector3d v = q.cast<double>() - place.p;
+                const double d = side * v.dot(left) - 0.5 * place.gap, x = v.dot(ahead);
+                const double z = v.dot(place.n) - 0.5 * side * place.mismatch;
+                if (d > 0.5 * scale.spacing && d < 8 * scale.spacing && std::abs(z) < 4 * noise_of(scale) && x < look) {
+                    if (x > 0) {
+                        s.push_back(x);
+                    } else {
+                        density += x > -look ? 1 / look : 0;
+                    }
+                }
+            });
+        reach = std::min(reach, end_of(s, density));
+    }
+    return reach;
+}
+
+// Shortens or lengthens the back of the way to where the first top ends.
+void place_end(const Follower& follower, std::vector<Station>& way, double step, double direction) {
+    constexpr std::size_t kInside = 6;
+    if (way.size() < 3 * kInside) {
+        return;
+    }
+    const GapPlace inner = way[way.size() - 1 - kInside].fit.place;
+    const double look = 4 * static_cast<double>(kInside) * step, spacing = follower.scale_at(inner.p).spacing;
+    const Eigen::Vector3d ahead = direction * inner.t;
+    const double reach = reach_ahead(follower, inner, ahead, look) - spacing;
+    const auto at = [&](const Station& s) { return (s.fit.place.p - inner.p).dot(ahead); };
+    if (reach + 4 * spacing >= look) {
+        return;
+    }
+    while (way.size() > 4 && at(way.back()) > reach - 0.5 * step) {
+        way.pop_back();
+    }
+    Station end = way.back();
+    const double rest = reach - at(end);
+    GapPlace& place = end.fit.place;
+    place.p += rest * direction * place.t;
+    end.fit.sigma *= 1 + rest / (10 * step);
+    way.push_back(end);
+}
+
+// 1-sigma of a view's shift, by how far the views' points lie off the tops along the whole seam.
+double registration_of(const std::vector<Station>& way) {
+    std::map<std::uint32_t, GapFit::ViewOff> all;
+    for (const Station& station : way) {
+        for (const auto& [view, off] : station.fit.views) {
+            all[view].sum += off.sum;
+            all[view].count += off.count;
+        }
+    }
+    double n = 0, sum = 0, squares = 0, most = 0;
+    for (const auto& [view, off] : all) {
+        most = std::max(most, off.count);
+    }
+    for (const auto& [view, off] : all) {
+        if (off.count > 0.05 * most) {
+            const double mean = off.sum / off.count;
+            n += 1, sum += mean, squares += mean * mean;
+        }
+    }
+    return n < 2 ? 0 : std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1)) * (1 + 0.6 / (n - 1));
+}
+
+Seam seam_of(const Around& around, const std::vector<Station>& way, bool closed) {
+    const double registration = registration_of(way);
+    Seam seam;
+    seam.kind = JointKind::butt;
+    seam.closed = closed;
+    std::vector<double> gap, mismatch, spacing;
+    double walls = 0, bridged = 0;
+    for (const Station& station : way) {
+        const GapFit& fit = station.fit;
+        const ScanScale scale = around.field.at(fit.place.p);
+        const double unseen = kUnseen * noise_of(scale);
+        const double sigma =
+            std::sqrt(fit.sigma * fit.sigma + registration * registration * fit.shift + unseen * unseen);
+        seam.points.push_back({around.scan.origin_mm + fit.place.p, fit.n1, fit.n2, sigma, station.modelled});
+        GrooveStation groove;
+        if (!station.modelled) {
+            groove.gap_mm = {fit.gap.value, std::hypot(fit.gap.sigma, 2 * unseen)};
+            groove.mismatch_mm = {fit.mismatch.value, fit.mismatch.sigma};
+            gap.push_back(fit.gap.value);
+            mismatch.push_back(fit.mismatch.value);
+            spacing.push_back(scale.spacing);
+        }
+        seam.groove.push_back(groove);
+        walls += fit.walled[0] + fit.walled[1];
+        bridged += station.modelled;
+    }
+    const double typical = quantile(gap, 0.5), step = quantile(mismatch, 0.5), pitch = quantile(spacing, 0.5);
+    // A gap of three point distances leaves no doubt; at one and a bit it could be a row that the scanner left out.
+    seam.confidence =
+        std::clamp(0.4 + 0.6 * (typical / pitch - 1) / 2, 0.0, 1.0) * (1 - bridged / static_cast<double>(way.size()));
+    seam.kind_reason = "two parallel tops end " + fixed(typical, 2) + " mm apart, the " +
+                       (step < 0 ? "right" : "left") + " one " + fixed(std::abs(step), 2) + " mm higher; " +
+                       (walls > 0 ? "their edges' walls are seen" : "nothing is seen of their edges' walls");
+    return seam;
+}
+
+double length_of(const std::vector<Station>& way) {
+    double length = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        length += (way[i].fit.place.p - way[i - 1].fit.place.p).norm();
+    }
+    return length;
+}
+
+// The gap between two plates shows on their end faces, too: short, and round the corner from the end of the joint.
+bool goes_round(const Seam& shorter, const Seam& longer, double reach) {
+    const auto meets = [&](const SeamPoint& a, const SeamPoint& b) {
+        return (a.p - b.p).norm() < reach && a.n1.dot(b.n1) < std::cos(2 * kMostTurn);
+    };
+    return !longer.closed &&
+           (meets(shorter.points.front(), longer.points.front()) ||
+            meets(shorter.points.front(), longer.points.back()) ||
+            meets(shorter.points.back(), longer.points.front()) || meets(shorter.points.back(), longer.points.back()));
+}
+
+}  // namespace
+
+Butts find_butts(const Around& around, const std::vector<Border>& borders, double min_length_mm) {
+    const Follower follower(around);
+    const double step = around.following.step;
+    Butts result;
+    for (const Way& followed : follow_all(around, follower, borders)) {
+        std::vector<Station> way = measure_places(follower, equal_steps(followed, step), followed.closed, step);
+        if (!followed.closed) {
+            place_end(follower, way, step, 1);
+            std::reverse(way.begin(), way.end());
+            place_end(follower, way, step, -1);
+            std::reverse(way.begin(), way.end());
+        }
+        const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * around.field.overall.spacing;
+        const double length = length_of(way);
+        const auto bridged = static_cast<std::size_t>(
+            std::count_if(way.begin(), way.end(), [](const Station& station) { return station.modelled; }));
+        if (3 * bridged > way.size()) {
+            continue;  // strays that line up here and there
+        }
+        if (way.size() < 6 || length < least) {
+            result.remarks.push_back("a gap " + fixed(length, 1) + " mm long was left out: shorter than " +
+                                     fixed(least, 1) + " mm");
+            continue;
+        }
+        result.seams.push_back(seam_of(around, way, followed.closed));
+    }
+    std::stable_sort(result.seams.begin(), result.seams.end(),
+                     [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });
+    for (std::size_t i = 0; i < result.seams.size(); ++i) {
+        std::erase_if(result.seams, [&](const Seam& seam) {
+            const bool round = &seam > &result.seams[i] && goes_round(seam, result.seams[i], 2 * kMostGap);
+            if (round) {
+                result.remarks.push_back(
+                    "a gap on the end faces of two plates was left out: it goes on round the corner");
+            }
+            return round;
+        });
+    }
+    return result;
+}
+
+}  // namespace seampath::detail
