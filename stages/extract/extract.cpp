@@ -75,6 +75,26 @@ void leave_out(std::vector<Crease>& creases, const std::vector<char>& claimed) {
     std::erase_if(creases, [&](const Crease&) { return claimed[i++] != 0; });
 }
 
+// Whether the seam runs beside a butt joint or groove, within what lies between their plates: a plate that stands
+// higher than the other is no lap on it.
+bool beside_groove(const Seam& seam, const std::vector<Seam>& found, double spacing) {
+    const auto known = [](const Measured& m) { return std::isnan(m.value) ? 0 : std::abs(m.value); };
+    std::size_t beside = 0;
+    for (const SeamPoint& point : seam.points) {
+        beside += std::any_of(found.begin(), found.end(), [&](const Seam& other) {
+            for (std::size_t i = 0; i < other.groove.size(); ++i) {
+                const GrooveStation& g = other.groove[i];
+                const double reach = known(g.gap_mm) + known(g.mismatch_mm) + known(g.depth_mm) + 3 * spacing;
+                if ((other.points[i].p - point.p).norm() < reach) {
+                    return true;
+                }
+            }
+            return false;
+        });
+    }
+    return 2 * beside > seam.points.size();
+}
+
 // Each kind of joint in turn: what one explains is not offered to the next. `creases` are those of `around`.
 void find_joints(Extraction& result, const Around& around, std::vector<Crease>& creases,
                  const ExtractOptions& options) {
@@ -96,6 +116,9 @@ void find_joints(Extraction& result, const Around& around, std::vector<Crease>& 
             find_laps(around, borders, {options.max_step_mm, options.joint == JointChoice::lap, options.min_length_mm});
         result.registration_mm = std::max(result.registration_mm, laps.registration_mm);
         of_laps = std::move(laps.tracks);
+        std::erase_if(laps.seams, [&](const Seam& seam) {
+            return beside_groove(seam, result.seams, around.field.overall.spacing);
+        });
         take(result, std::move(laps.seams), std::move(laps.remarks));
     }
     const bool fillet = asked(options, JointChoice::fillet);
@@ -111,13 +134,19 @@ void find_joints(Extraction& result, const Around& around, std::vector<Crease>& 
     }
 }
 
-void tell_what_else_there_is(Extraction& result, const Scan& scan, ExtractOptions options) {
-    const std::string asked_for(kJointChoiceNames[static_cast<std::size_t>(options.joint)]);
-    options.joint = JointChoice::automatic;
-    for (const Seam& seam : extract(scan, options).seams) {
-        result.remarks.push_back("extract.joint says " + asked_for + ", but the scan shows a " +
-                                 std::string(name(seam.kind)) + ": " + seam.kind_reason);
+void contradict(Extraction& result, JointChoice asked_for, const std::vector<Seam>& seen) {
+    for (const Seam& seam : seen) {
+        result.remarks.push_back("extract.joint says " +
+                                 std::string(kJointChoiceNames[static_cast<std::size_t>(asked_for)]) +
+                                 ", but the scan shows a " + std::string(name(seam.kind)) + ": " + seam.kind_reason);
     }
+}
+
+// Where fillets were asked for, the parts of other joints look like some.
+void tell_what_fillets_belong_to(Extraction& result, const Around& around, const ExtractOptions& options) {
+    contradict(result, options.joint, find_grooves(around, options.min_length_mm).seams);
+    contradict(result, options.joint,
+               find_laps(around, find_borders(around), {options.max_step_mm, false, options.min_length_mm}).seams);
 }
 
 }  // namespace
@@ -168,8 +197,12 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     const Around around{scan, grid, field, surfels, creases, following};
 
     find_joints(result, around, creases, options);
-    if (options.joint != JointChoice::automatic && result.seams.empty()) {
-        tell_what_else_there_is(result, scan, options);
+    if (options.joint == JointChoice::fillet) {
+        tell_what_fillets_belong_to(result, around, options);
+    } else if (options.joint != JointChoice::automatic && result.seams.empty()) {
+        ExtractOptions automatic = options;
+        automatic.joint = JointChoice::automatic;
+        contradict(result, options.joint, extract(scan, automatic).seams);
     }
     std::stable_sort(result.seams.begin(), result.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });

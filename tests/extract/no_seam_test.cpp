@@ -156,11 +156,17 @@ TEST(NoMeasurement, WhereAllPointsAreInOnePlace) {
         ThrowsMessage<InputError>(StartsWith("extract: all points lie in one place")));
 }
 
-TEST(NoMeasurement, OfKindsThatAreNotFollowedYet) {
+class OtherKinds : public testing::TestWithParam<JointChoice> {};
+INSTANTIATE_TEST_SUITE_P(OfJoints, OtherKinds,
+                         testing::Values(JointChoice::lap, JointChoice::butt, JointChoice::v_groove,
+                                         JointChoice::corner, JointChoice::saddle));
+
+TEST_P(OtherKinds, ThanTheScanShowsGiveNoSeamAndSayWhatThereIs) {
     ExtractOptions options;
-    options.joint = JointChoice::saddle;
-    EXPECT_THAT([&] { extract(corner_scan(10), options); },
-                ThrowsMessage<InputError>(StartsWith("extract: joint kind 'saddle' is not followed yet")));
+    options.joint = GetParam();
+    const Extraction extraction = extract(corner_scan(40), options);
+    EXPECT_TRUE(extraction.seams.empty());
+    EXPECT_THAT(extraction.remarks, testing::Contains(testing::HasSubstr("but the scan shows a fillet")));
 }
 
 TEST(Degenerate, ExactCornerIsFound) {
