@@ -71,20 +71,34 @@ private:
             if (!next) {
                 return false;
             }
-            const Station& last = way.back();
+            const Station last = way.back();  // a copy: the way grows
             const double jump = (next->place.p - last.fit.place.p).norm();
             const int between = static_cast<int>(std::lround(jump / step_));
             for (int i = 1; i < between; ++i) {
                 way.push_back(mixed(last, *next, static_cast<double>(i) / between));
             }
             way.push_back({*next});
-            const GapPlace& first = way.front().fit.place;
-            if (way.size() > 20 && (next->place.p - first.p).norm() < step_ && next->place.t.dot(first.t) > 0.8) {
+            if (const auto start = met_again(way)) {
+                // What lies before the place that it came back to is a piece travelled once, on the way there.
+                way.erase(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(*start));
                 way.pop_back();
                 return true;
             }
         }
         return false;
+    }
+
+    // The place of the way at which its back has arrived once more.
+    std::optional<std::size_t> met_again(const std::vector<Station>& way) const {
+        constexpr std::size_t kBehind = 20;  // the latest places are near in any case
+        const GapPlace& now = way.back().fit.place;
+        for (std::size_t i = 0; i + kBehind < way.size(); ++i) {
+            const GapPlace& then = way[i].fit.place;
+            if ((now.p - then.p).norm() < step_ && now.t.dot(then.t) > 0.8) {
+                return i;
+            }
+        }
+        return std::nullopt;
     }
 
     static Station mixed(const Station& a, const GapFit& b, double x) {
