@@ -110,13 +110,17 @@ std::vector<TrackPoint> without_outliers(const std::vector<std::optional<TrackPo
 // badly fused scan make creases too, but narrow or rough ones, or such that jump from point to point by more than they
 // are sure of.
 bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t places) {
-    constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6, kMostUnsure = 1;
+    constexpr double kLeastWidth = 10, kMostRough = 1.8, kMostJump = 6;
+    // The angle of a low wall is known from all of it, once it is a joint: its places may be less sure by themselves.
+    const double most_unsure = tracker.wall ? 2 : 1;
     std::vector<double> away, rough, unsure, jump, sigma;  // the first in spacings, the next two in noises
-    for (std::size_t i = 1; i + 1 < way.size(); ++i) {
+    for (std::size_t i = 1; i + 2 < way.size(); ++i) {
         if (!way[i].modelled) {
-            // Across the seam only: places may lie closer or further apart along it.
-            const Eigen::Vector3d d = way[i - 1].section.p - 2 * way[i].section.p + way[i + 1].section.p;
-            jump.push_back((d - d.dot(way[i].t) * way[i].t).norm());
+            // Across the seam only: places may lie closer or further apart along it. Third differences leave out what a
+            // bend of the seam makes of second ones; of noise they are larger by the root of 20 / 6.
+            const Eigen::Vector3d d =
+                way[i + 2].section.p - way[i - 1].section.p + 3 * (way[i].section.p - way[i + 1].section.p);
+            jump.push_back(std::sqrt(0.3) * (d - d.dot(way[i].t) * way[i].t).norm());
             away.push_back(way[i].away / tracker.scale_at(way[i].section).spacing);
             rough.push_back(way[i].rough);
             unsure.push_back(way[i].sigma / noise_of(tracker.scale_at(way[i].section)));
@@ -124,7 +128,7 @@ bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::s
         }
     }
     return way.size() >= kLeastPlaces && 2 * way.size() > places && quantile(away, 0.5) >= kLeastWidth &&
-           quantile(rough, 0.5) <= kMostRough && quantile(unsure, 0.5) <= kMostUnsure &&
+           quantile(rough, 0.5) <= kMostRough && quantile(unsure, 0.5) <= most_unsure &&
            quantile(jump, 0.5) <= kMostJump * quantile(sigma, 0.5);
 }
 

@@ -19,9 +19,10 @@ namespace {
 using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
-constexpr double kSparse = 2, kTooSparse = 5;  // point distance, in those of the scan
-constexpr std::size_t kLeastPoints = 30;       // of a face
-constexpr std::size_t kMostPoints = 6000;      // of a face or beside it: more only take time
+constexpr double kSparse = 2, kTooSparse = 5;   // point distance, in those of the scan
+constexpr std::size_t kLeastPoints = 30;        // of a face
+constexpr std::size_t kEnoughForWindows = 500;  // a face of more is found as others are, or is none
+constexpr std::size_t kMostPoints = 6000;       // of a face or beside it: more only take time
 constexpr int kTrials = 400;             // a quarter of the points on the face: failure chance (1 - 1/64)^400 = 0.2 %
 constexpr std::size_t kMostGrowth = 20;  // of a face's points, by those near well-seen surfaces
 constexpr double kOnePlane = 0.8;        // of the points of a sparse surface, on the face's plane
@@ -198,7 +199,8 @@ std::vector<Face> sparse_faces(const Around& around) {
         }
         const auto face = face_of(std::move(plane), Vector3d::UnitX(), 0.1 * scale.noise);
         if (face && face->spacing < kTooSparse * scale.spacing && face->plane.scale() < 1.2 * scale.noise) {
-            if (auto whole = grown(around.grid, *face, 0.1 * scale.noise)) {
+            auto whole = grown(around.grid, *face, 0.1 * scale.noise);
+            if (whole && whole->points.size() < kEnoughForWindows) {
                 faces.push_back(std::move(*whole));
             }
         }
