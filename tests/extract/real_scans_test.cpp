@@ -75,8 +75,8 @@ TEST_P(RealScans, ShowTheirSeamsAndNothingElse) {
     EXPECT_LE(other, GetParam().most_else_mm);
 }
 
-// The lidar's noise is 1.15 mm about planes. Its tee lies on the table, with the post's visible side on the cross-bar: in
-// the first scan at such a slant that its points lie 8 mm apart, where others do at 2.3.
+// The lidar's noise is 1.15 mm about planes. Its tee lies on the table, with the post's visible side on the cross-bar:
+// in the first scan at such a slant that its points lie 8 mm apart, where others do at 2.3.
 INSTANTIATE_TEST_SUITE_P(Tee, RealScans,
                          testing::Values(RealScan{"tee_lidar/table_8in10in_tee_x0y24.pcd",
                                                   {{{56.73, -584.16, -6.03}, {0.9998, 0.0208, -0.0015}, 0, 250, 1.2},
