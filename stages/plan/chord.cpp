@@ -79,12 +79,16 @@ Chord chord(const Samples& samples, const TorchPose& a, const TorchPose& b) {
     const auto by_parameter = [](double u, const TorchPose& pose) { return u < pose.u; };
     auto k = std::upper_bound(samples.pose.begin(), samples.pose.end(), a.u, by_parameter) - samples.pose.begin();
     Chord result{0, rotation_angle(a.q, b.q)};
-    double bulge = k > 0 && a.u < b.u ? samples.bulge_mm[k - 1] : 0;
+    // Of the piece after sample i. There is none after the last one, which a parameter may pass by rounding.
+    const auto bulge_after = [&](std::ptrdiff_t i) {
+        return i < std::ssize(samples.bulge_mm) ? samples.bulge_mm[i] : 0;
+    };
+    double bulge = k > 0 && a.u < b.u ? bulge_after(k - 1) : 0;
     for (; k < std::ssize(samples.pose) && samples.pose[k].u < b.u; ++k) {
         const TorchPose& s = samples.pose[k];
         result.error_mm = std::max(result.error_mm, distance_to_segment(s.p, a.p, b.p));
         result.turn = std::max({result.turn, rotation_angle(a.q, s.q), rotation_angle(s.q, b.q)});
-        bulge = std::max(bulge, samples.bulge_mm[k]);
+        bulge = std::max(bulge, bulge_after(k));
     }
     result.error_mm += bulge;
     return result;
