@@ -183,8 +183,9 @@ Command run_command(CLI::App& program) {
     app->add_option("SCAN", given->scans, "scan files; several are several parts")->required();
     app->add_option("--out", given->out, "folder for the results")->required();
     app->add_option("--config", given->config, "config file, JSON with comments");
-    app->add_option("--joint", given->joint,
-                    "joint kind: auto, fillet, lap, butt, corner; the same as --set extract.joint=KIND");
+    app->add_option(
+        "--joint", given->joint,
+        "joint kind: auto, fillet, lap, butt, v-groove, corner, saddle; the same as --set extract.joint=KIND");
     app->add_option("--robot", given->robot,
                     "robots, with commas between, of " + join(kRobotNames) + "; the same as --set export.robots=NAMES");
     app->add_option("--set", given->set, "stage.key=value, over the config file")->allow_extra_args(false);
