@@ -71,7 +71,19 @@ std::array<FlankPoints, 2> gather(const PointGrid& grid, const ScanScale& scale,
             }
         }
     }
+    // The box of slanting flanks holds much besides them: no point of a cell is farther from its first than this.
+    const double diagonal = std::sqrt(3.0) * grid.cell();
+    const auto apart = [&](const Eigen::Vector3d& first) {
+        const auto beside = [&](std::size_t k) {
+            const double u = first.dot(f.d[k]);
+            return u < nearest(k) - diagonal || u > windows[k].away + diagonal;
+        };
+        return std::abs(first.dot(f.t)) > along + diagonal || (beside(0) && beside(1));
+    };
     grid.for_cells_in_box(low, high, [&](std::size_t cell) {
+        if (apart(grid.points(cell).front().cast<double>() - f.p)) {
+            return;
+        }
         for (const Eigen::Vector3f& q : grid.points(cell)) {
             const Eigen::Vector3d v = q.cast<double>() - f.p;
             const double s = v.dot(f.t);
