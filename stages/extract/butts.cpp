@@ -31,6 +31,13 @@ struct Way {
     bool closed = false;
 };
 
+// Between two places, x of the way from a to b.
+GapPlace between(const GapPlace& a, const GapPlace& b, double x) {
+    const auto mixed = [x]<typename T>(const T& from, const T& to) -> T { return (1 - x) * from + x * to; };
+    return {mixed(a.p, b.p),     mixed(a.t, b.t).normalized(),  mixed(a.n, b.n).normalized(),
+            mixed(a.gap, b.gap), mixed(a.mismatch, b.mismatch), mixed(a.bend, b.bend)};
+}
+
 class Follower {
 public:
     explicit Follower(const Around& around)
@@ -73,9 +80,10 @@ private:
             }
             const Station last = way.back();  // a copy: the way grows
             const double jump = (next->place.p - last.fit.place.p).norm();
-            const int between = static_cast<int>(std::lround(jump / step_));
-            for (int i = 1; i < between; ++i) {
-                way.push_back(mixed(last, *next, static_cast<double>(i) / between));
+            const int steps = static_cast<int>(std::lround(jump / step_));
+            for (int i = 1; i < steps; ++i) {
+                way.push_back({last.fit, true});
+                way.back().fit.place = between(last.fit.place, next->place, static_cast<double>(i) / steps);
             }
             way.push_back({*next});
             if (const auto start = met_again(way)) {
@@ -99,15 +107,6 @@ private:
             }
         }
         return std::nullopt;
-    }
-
-    static Station mixed(const Station& a, const GapFit& b, double x) {
-        Station station{a.fit, true};
-        GapPlace& place = station.fit.place;
-        place.p = (1 - x) * a.fit.place.p + x * b.place.p;
-        place.t = ((1 - x) * a.fit.place.t + x * b.place.t).normalized();
-        place.n = ((1 - x) * a.fit.place.n + x * b.place.n).normalized();
-        return station;
     }
 
     // The next measured place; where a tack hides the gap, one behind it.
@@ -157,6 +156,13 @@ bool lies_on(const Way& way, const Eigen::Vector3d& p, double reach) {
                        [&](const Station& s) { return (s.fit.place.p - p).norm() < reach; });
 }
 
+// Whether most of the way is part of the longer one.
+bool runs_along(const Way& way, const Way& longer, double reach) {
+    const auto on = std::count_if(way.at.begin(), way.at.end(),
+                                  [&](const Station& s) { return lies_on(longer, s.fit.place.p, reach); });
+    return way.at.size() <= longer.at.size() && 2 * static_cast<std::size_t>(on) > way.at.size();
+}
+
 std::vector<Way> follow_all(const Around& around, const Follower& follower, const std::vector<Border>& borders) {
     std::vector<Way> ways;
     for (const Border& border : borders) {
@@ -170,7 +176,10 @@ std::vector<Way> follow_all(const Around& around, const Follower& follower, cons
         const auto place = place_of(around, border);
         const auto seed = place ? follower.measure(*place, 4) : std::nullopt;
         if (seed && (seed->place.p - place->p).norm() < kMostGap && !taken(seed->place.p)) {
-            ways.push_back(follower.follow(*seed));
+            Way way = follower.follow(*seed);
+            // A way that had broken off before is found again by one that goes further.
+            std::erase_if(ways, [&](const Way& other) { return runs_along(other, way, follower.step()); });
+            ways.push_back(std::move(way));
         }
     }
     return ways;
@@ -194,20 +203,16 @@ std::vector<Station> equal_steps(const Way& way, double step) {
             ++i;
         }
         const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
-        const GapPlace &a = from[i - 1].fit.place, &b = from[i].fit.place;
         Station place = x < 0.5 ? from[i - 1] : from[i];
-        place.fit.place.p = (1 - x) * a.p + x * b.p;
-        place.fit.place.t = ((1 - x) * a.t + x * b.t).normalized();
-        place.fit.place.n = ((1 - x) * a.n + x * b.n).normalized();
-        place.fit.place.gap = (1 - x) * a.gap + x * b.gap;
-        place.fit.place.mismatch = (1 - x) * a.mismatch + x * b.mismatch;
+        place.fit.place = between(from[i - 1].fit.place, from[i].fit.place, x);
         places.push_back(place);
     }
     return places;
 }
 
-// Curvature of the way at place i, by the places `reach` mm before and behind.
-double bend_at(const std::vector<Station>& places, bool closed, std::size_t i, double reach, double step) {
+// Place i with the direction and bend that the way has over `reach` mm before and behind: those of a single place are
+// too unsure for a long window.
+GapPlace guess_at(const std::vector<Station>& places, bool closed, std::size_t i, double reach, double step) {
     const auto n = static_cast<std::ptrdiff_t>(places.size());
     auto half = static_cast<std::ptrdiff_t>(std::lround(reach / step));
     const auto at = static_cast<std::ptrdiff_t>(i);
@@ -218,33 +223,87 @@ double bend_at(const std::vector<Station>& places, bool closed, std::size_t i, d
     };
     const GapPlace& here = place(middle);
     const Eigen::Vector3d a = place(middle - half).p - here.p, b = place(middle + half).p - here.p;
-    return here.n.cross(here.t).dot(a + b) / (0.5 * (a.squaredNorm() + b.squaredNorm()));
+    GapPlace guess = places[i].fit.place;
+    guess.bend = here.n.cross(here.t).dot(a + b) / (0.5 * (a.squaredNorm() + b.squaredNorm()));
+    const Eigen::Vector3d along =
+        (b - a).normalized() + guess.bend * step * static_cast<double>(at - middle) * here.n.cross(here.t);
+    guess.t = (along - along.dot(guess.n) * guess.n).normalized();
+    return guess;
+}
+
+// The place nearest to i that is `least` places away from both ends, or as far as it can be.
+std::size_t from_the_ends(std::size_t i, double least, std::size_t count) {
+    const auto away = std::min(static_cast<std::size_t>(std::lround(least)), (count - 1) / 2);
+    return std::clamp(i, away, count - 1 - away);
+}
+
+// Along the course that was fitted within `half` mm to each side: a line is the less sure the farther from its middle.
+void slide(GapFit& fit, double s, double half) {
+    const Eigen::Vector3d left = fit.place.n.cross(fit.place.t);
+    fit.place.p += s * fit.place.t + 0.5 * fit.place.bend * s * s * left;
+    fit.place.t = (fit.place.t + fit.place.bend * s * left).normalized();
+    fit.sigma *= std::sqrt(1 + 3 * s * s / (half * half));
+}
+
+// Place i as a window around the place `from` tells it.
+std::optional<GapFit> measure_from(const Follower& follower, const std::vector<Station>& places, bool closed,
+                                   std::size_t i, std::size_t from, double step) {
+    const ScanScale scale = follower.scale_at(places[from].fit.place.p);
+    const GapPlace guess = guess_at(places, closed, from, measuring_window(scale).along, step);
+    const SectionWindow window = within_bend(measuring_window(scale), guess.bend, scale);
+    auto fit = settle_gap(follower.scan(), scale, guess, window, 2);
+    if (!fit || !follower.is_gap(*fit, scale)) {
+        return std::nullopt;
+    }
+    const Eigen::Vector3d& p = places[i].fit.place.p;
+    if (from != i) {
+        slide(*fit, (p - fit->place.p).dot(fit->place.t), window.along);
+    }
+    return (fit->place.p - p).norm() < 0.5 * guess.gap + scale.spacing ? fit : std::nullopt;
+}
+
+// Places that could not be measured, between those that could: a better guess than what led there.
+void fill_between(std::vector<Station>& places, const std::vector<std::optional<GapFit>>& measured) {
+    std::optional<std::size_t> before;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (!measured[i]) {
+            continue;
+        }
+        places[i].fit = *measured[i];
+        for (std::size_t k = before ? *before + 1 : i; k < i; ++k) {
+            const double x = static_cast<double>(k - *before) / static_cast<double>(i - *before);
+            places[k].fit.place = between(places[*before].fit.place, places[i].fit.place, x);
+        }
+        before = i;
+    }
 }
 
 std::vector<Station> measure_places(const Follower& follower, std::vector<Station> places, bool closed, double step) {
     std::vector<std::optional<GapFit>> measured(places.size());
-    parallel_for(places.size(), 4, [&](std::size_t i) {
-        GapPlace guess = places[i].fit.place;
-        const ScanScale scale = follower.scale_at(guess.p);
-        guess.bend = bend_at(places, closed, i, measuring_window(scale).along, step);
-        SectionWindow window = within_bend(measuring_window(scale), guess.bend, scale);
-        if (!closed) {
-            // Near its ends a window sees one side only: it reaches further that way.
-            const double to_end = step * static_cast<double>(std::min(i, places.size() - 1 - i));
-            window.along += std::max(0.0, window.along - to_end);
-        }
-        auto fit = settle_gap(follower.scan(), scale, guess, window, 2);
-        if (fit && follower.is_gap(*fit, scale) && (fit->place.p - guess.p).norm() < 0.5 * guess.gap + scale.spacing) {
-            measured[i] = std::move(fit);
-        }
-    });
+    for (int round = 0; round < 2; ++round) {
+        parallel_for(places.size(), 4, [&](std::size_t i) {
+            const double along = measuring_window(follower.scale_at(places[i].fit.place.p)).along;
+            // Near an open end as seen from a little way inside: a window on the end itself would see one half only.
+            const std::size_t inside = closed ? i : from_the_ends(i, 0.7 * along / step, places.size());
+            for (const std::size_t from : {inside, i}) {
+                if (!measured[i]) {
+                    measured[i] = measure_from(follower, places, closed, i, from, step);
+                }
+            }
+        });
+        fill_between(places, measured);
+    }
     std::vector<Station> kept;
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (measured[i]) {
             kept.push_back({*measured[i], false});
-        } else if (places[i].modelled) {
+        } else if (places[i].modelled && (closed || !kept.empty())) {
             kept.push_back(places[i]);
         }
+    }
+    // What is bridged needs support on both sides.
+    while (!closed && !kept.empty() && kept.back().modelled) {
+        kept.pop_back();
     }
     return kept;
 }
