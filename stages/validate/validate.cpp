@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kNoiseTolerance = 3;    // tolerance by default, in sigmas of a single scan point
 constexpr double kLeastTolerance = 0.1;  // mm; tracking accuracy that arc welding asks of a path
+constexpr double kWide = 0.5;            // mm; a default beyond it is more than the welds of thin plates can bear
 constexpr double kGuard = 2;             // sigmas of the measurement taken off the tolerance (ISO 14253-1)
 constexpr double kMostSigma = 3;         // of the seam's usual sigma; a weaker fit says nothing about the model
 constexpr double kGrooveReach = 40;      // mm; tops begin far from the root of a deep groove
@@ -167,6 +168,11 @@ void summarise(Deviation& result, const ValidateOptions& options) {
                      " tolerance " + fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
                      " % of the seam measured" +
                      (covered ? "" : ", less than " + fixed(100 * options.min_coverage, 1) + " %");
+    if (options.tolerance_mm == 0 && result.tolerance_mm > kWide) {
+        result.verdict += "; the tolerance is only what the scan's noise of " +
+                          fixed(result.tolerance_mm / kNoiseTolerance, 2) +
+                          " mm allows: set validate.tolerance_mm to what the weld needs";
+    }
 }
 
 }  // namespace

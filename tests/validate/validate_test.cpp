@@ -15,6 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr double kLength = 100;
@@ -69,6 +70,13 @@ TEST(Validate, PerfectModelOfANoisyScanPasses) {
     EXPECT_NEAR(deviation.tolerance_mm, 3 * 0.045, 0.015) << "three sigmas of a point";
     EXPECT_THAT(deviation.verdict, StartsWith("pass: p99.7 "));
     EXPECT_THAT(deviation.verdict, HasSubstr("100.0 % of the seam measured"));
+}
+
+TEST(Validate, SaysThatAToleranceByNoiseAloneIsWide) {
+    const SeamModel model = wedge_model(kPi / 2, {0, 0, 0});
+    EXPECT_THAT(validate(model, wedge(kPi / 2, 0.4), {}).verdict, HasSubstr("set validate.tolerance_mm"));
+    EXPECT_THAT(validate(model, wedge(kPi / 2, 0.4), {1.2, 0.9}).verdict, Not(HasSubstr("validate.tolerance_mm")));
+    EXPECT_THAT(validate(model, wedge(kPi / 2, 0.045), {}).verdict, Not(HasSubstr("validate.tolerance_mm")));
 }
 
 TEST(Validate, SigmaSpeaksOfTheErrorsThatAreMade) {
