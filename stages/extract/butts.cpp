@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "stages/extract/ends.hpp"
-#include "stages/geometry/border_section.hpp"
+#include "stages/extract/gap_way.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/text.hpp"
@@ -15,179 +15,13 @@
 namespace seampath::detail {
 namespace {
 
-constexpr double kLeastGap = 1.1;  // point distances; what is narrower is not seen, and may be a step's wall
-constexpr double kMostTurn = 20 * std::numbers::pi / 180;  // of the direction, per step of following
-constexpr double kMostJump = 25;                           // mm without a gap to be seen, which tacks bridge
-constexpr double kLeastLength = 40;                        // of a seam, in point distances
+constexpr double kRound = 40 * std::numbers::pi / 180;  // between the tops of two gaps that meet round a corner
+constexpr double kLeastLength = 40;                     // of a seam, in point distances
 constexpr double kUnseen = 0.2;  // noises by which an edge's place is doubtful beyond what its witnesses scatter
-constexpr std::size_t kMostSteps = 20000;
-
-struct Station {
-    GapFit fit;
-    bool modelled = false;
-};
-struct Way {
-    std::vector<Station> at;
-    bool closed = false;
-};
-
-// Between two places, x of the way from a to b.
-GapPlace between(const GapPlace& a, const GapPlace& b, double x) {
-    const auto mixed = [x]<typename T>(const T& from, const T& to) -> T { return (1 - x) * from + x * to; };
-    return {mixed(a.p, b.p),     mixed(a.t, b.t).normalized(),  mixed(a.n, b.n).normalized(),
-            mixed(a.gap, b.gap), mixed(a.mismatch, b.mismatch), mixed(a.bend, b.bend)};
-}
-
-class Follower {
-public:
-    explicit Follower(const Around& around)
-        : around_(around), scan_{around.grid, around.following.view_starts}, step_(2 * around.following.step) {}
-
-    double step() const { return step_; }
-    const ViewedPoints& scan() const { return scan_; }
-    ScanScale scale_at(const Eigen::Vector3d& p) const { return around_.field.at(p); }
-
-    std::optional<GapFit> measure(const GapPlace& guess, int rounds) const {
-        const ScanScale scale = scale_at(guess.p);
-        auto fit = settle_gap(scan_, scale, guess, following_window(scale), rounds);
-        return fit && is_gap(*fit, scale) ? fit : std::nullopt;
-    }
-
-    bool is_gap(const GapFit& fit, const ScanScale& scale) const {
-        const auto& [place, n1, n2, gap, mismatch, sigma, shift, views, support, walled] = fit;
-        return place.gap > kLeastGap * scale.spacing && place.gap < kMostGap &&
-               std::abs(place.mismatch) < kMostMismatch && n1.dot(n2) > std::cos(kMostTurn) &&
-               std::min(support[0], support[1]) > 0;
-    }
-
-    // Both ways from a seed, until the gap is no longer seen or comes back to where it began.
-    Way follow(const GapFit& seed) const {
-        Way way{{{seed}}, false};
-        for (const double direction : {1.0, -1.0}) {
-            way.closed = way.closed || advance(way.at, direction);
-            std::reverse(way.at.begin(), way.at.end());
-        }
-        return way;
-    }
-
-private:
-    // Extends the way at its back; true when it has come back to its front.
-    bool advance(std::vector<Station>& way, double direction) const {
-        while (way.size() < kMostSteps) {
-            const auto next = beyond(way, direction);
-            if (!next) {
-                return false;
-            }
-            const Station last = way.back();  // a copy: the way grows
-            const double jump = (next->place.p - last.fit.place.p).norm();
-            const int steps = static_cast<int>(std::lround(jump / step_));
-            for (int i = 1; i < steps; ++i) {
-                way.push_back({last.fit, true});
-                way.back().fit.place = between(last.fit.place, next->place, static_cast<double>(i) / steps);
-            }
-            way.push_back({*next});
-            if (const auto start = met_again(way)) {
-                // What lies before the place that it came back to is a piece travelled once, on the way there.
-                way.erase(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(*start));
-                way.pop_back();
-                return true;
-            }
-        }
-        return false;
-    }
-
-    // The place of the way at which its back has arrived once more.
-    std::optional<std::size_t> met_again(const std::vector<Station>& way) const {
-        constexpr std::size_t kBehind = 20;  // the latest places are near in any case
-        const GapPlace& now = way.back().fit.place;
-        for (std::size_t i = 0; i + kBehind < way.size(); ++i) {
-            const GapPlace& then = way[i].fit.place;
-            if ((now.p - then.p).norm() < step_ && now.t.dot(then.t) > 0.8) {
-                return i;
-            }
-        }
-        return std::nullopt;
-    }
-
-    // The next measured place; where a tack hides the gap, one behind it.
-    std::optional<GapFit> beyond(const std::vector<Station>& way, double direction) const {
-        const GapPlace& last = way.back().fit.place;
-        Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // of the direction, per mm
-        if (way.size() > 8) {
-            const GapPlace& before = way[way.size() - 8].fit.place;
-            turn = (last.t - before.t) / std::max(step_, (last.p - before.p).norm());
-        }
-        for (double ahead = step_; ahead <= kMostJump; ahead += step_) {
-            GapPlace guess = last;
-            guess.p += ahead * direction * last.t + 0.5 * ahead * ahead * turn;
-            const auto fit = measure(guess, 2);
-            const double off = fit ? (fit->place.p - guess.p).norm() : 0;
-            if (fit && off < 0.25 * last.gap + 0.3 * step_ + 0.02 * ahead &&
-                fit->place.t.dot(last.t) > std::cos(kMostTurn) && fit->place.gap > 0.4 * last.gap &&
-                fit->place.gap < 2.5 * last.gap) {
-                return fit;
-            }
-        }
-        return std::nullopt;
-    }
-
-    const Around& around_;
-    ViewedPoints scan_;
-    double step_;
-};
-
-std::optional<GapPlace> place_of(const Around& around, const Border& border) {
-    const auto other = sheet_beyond(around, border, kMostGap, -kMostMismatch, kMostMismatch);
-    if (!other) {
-        return std::nullopt;
-    }
-    // The sheet that ends is plate 1, on the right of travel. The narrowest gaps are not yet told from none.
-    const double gap = std::max(other->gap, kLeastGap * around.field.at(border.p).spacing);
-    return GapPlace{border.p + 0.5 * gap * border.out + 0.5 * other->height * border.n,
-                    border.out.cross(border.n),
-                    border.n,
-                    gap,
-                    other->height,
-                    0};
-}
-
-bool lies_on(const Way& way, const Eigen::Vector3d& p, double reach) {
-    return std::any_of(way.at.begin(), way.at.end(),
-                       [&](const Station& s) { return (s.fit.place.p - p).norm() < reach; });
-}
-
-// Whether most of the way is part of the longer one.
-bool runs_along(const Way& way, const Way& longer, double reach) {
-    const auto on = std::count_if(way.at.begin(), way.at.end(),
-                                  [&](const Station& s) { return lies_on(longer, s.fit.place.p, reach); });
-    return way.at.size() <= longer.at.size() && 2 * static_cast<std::size_t>(on) > way.at.size();
-}
-
-std::vector<Way> follow_all(const Around& around, const Follower& follower, const std::vector<Border>& borders) {
-    std::vector<Way> ways;
-    for (const Border& border : borders) {
-        const auto taken = [&](const Eigen::Vector3d& p) {
-            return std::any_of(ways.begin(), ways.end(),
-                               [&](const Way& way) { return lies_on(way, p, kMostGap + 2 * follower.step()); });
-        };
-        if (taken(border.p)) {
-            continue;
-        }
-        const auto place = place_of(around, border);
-        const auto seed = place ? follower.measure(*place, 4) : std::nullopt;
-        if (seed && (seed->place.p - place->p).norm() < kMostGap && !taken(seed->place.p)) {
-            Way way = follower.follow(*seed);
-            // A way that had broken off before is found again by one that goes further.
-            std::erase_if(ways, [&](const Way& other) { return runs_along(other, way, follower.step()); });
-            ways.push_back(std::move(way));
-        }
-    }
-    return ways;
-}
 
 // Places at equal distances along the way.
-std::vector<Station> equal_steps(const Way& way, double step) {
-    std::vector<Station> from = way.at;
+std::vector<GapStation> equal_steps(const GapWay& way, double step) {
+    std::vector<GapStation> from = way.at;
     if (way.closed) {
         from.push_back(from.front());
     }
@@ -196,14 +30,14 @@ std::vector<Station> equal_steps(const Way& way, double step) {
         station[i] = station[i - 1] + (from[i].fit.place.p - from[i - 1].fit.place.p).norm();
     }
     const auto count = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(station.back() / step)));
-    std::vector<Station> places;
+    std::vector<GapStation> places;
     for (std::size_t k = 0, i = 1; k < count + (way.closed ? 0 : 1); ++k) {
         const double s = station.back() * static_cast<double>(k) / static_cast<double>(count);
         while (i + 1 < from.size() && station[i] < s) {
             ++i;
         }
         const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
-        Station place = x < 0.5 ? from[i - 1] : from[i];
+        GapStation place = x < 0.5 ? from[i - 1] : from[i];
         place.fit.place = between(from[i - 1].fit.place, from[i].fit.place, x);
         places.push_back(place);
     }
@@ -212,7 +46,7 @@ std::vector<Station> equal_steps(const Way& way, double step) {
 
 // Place i with the direction and bend that the way has over `reach` mm before and behind: those of a single place are
 // too unsure for a long window.
-GapPlace guess_at(const std::vector<Station>& places, bool closed, std::size_t i, double reach, double step) {
+GapPlace guess_at(const std::vector<GapStation>& places, bool closed, std::size_t i, double reach, double step) {
     const auto n = static_cast<std::ptrdiff_t>(places.size());
     auto half = static_cast<std::ptrdiff_t>(std::lround(reach / step));
     const auto at = static_cast<std::ptrdiff_t>(i);
@@ -246,13 +80,13 @@ void slide(GapFit& fit, double s, double half) {
 }
 
 // Place i as a window around the place `from` tells it.
-std::optional<GapFit> measure_from(const Follower& follower, const std::vector<Station>& places, bool closed,
+std::optional<GapFit> measure_from(const Around& around, const std::vector<GapStation>& places, bool closed,
                                    std::size_t i, std::size_t from, double step) {
-    const ScanScale scale = follower.scale_at(places[from].fit.place.p);
+    const ScanScale scale = around.field.at(places[from].fit.place.p);
     const GapPlace guess = guess_at(places, closed, from, measuring_window(scale).along, step);
     const SectionWindow window = within_bend(measuring_window(scale), guess.bend, scale);
-    auto fit = settle_gap(follower.scan(), scale, guess, window, 2);
-    if (!fit || !follower.is_gap(*fit, scale)) {
+    auto fit = settle_gap(viewed_points(around), scale, guess, window, 2);
+    if (!fit || !is_gap(*fit, scale)) {
         return std::nullopt;
     }
     const Eigen::Vector3d& p = places[i].fit.place.p;
@@ -263,7 +97,7 @@ std::optional<GapFit> measure_from(const Follower& follower, const std::vector<S
 }
 
 // Places that could not be measured, between those that could: a better guess than what led there.
-void fill_between(std::vector<Station>& places, const std::vector<std::optional<GapFit>>& measured) {
+void fill_between(std::vector<GapStation>& places, const std::vector<std::optional<GapFit>>& measured) {
     std::optional<std::size_t> before;
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (!measured[i]) {
@@ -278,22 +112,22 @@ void fill_between(std::vector<Station>& places, const std::vector<std::optional<
     }
 }
 
-std::vector<Station> measure_places(const Follower& follower, std::vector<Station> places, bool closed, double step) {
+std::vector<GapStation> measure_places(const Around& around, std::vector<GapStation> places, bool closed, double step) {
     std::vector<std::optional<GapFit>> measured(places.size());
     for (int round = 0; round < 2; ++round) {
         parallel_for(places.size(), 4, [&](std::size_t i) {
-            const double along = measuring_window(follower.scale_at(places[i].fit.place.p)).along;
+            const double along = measuring_window(around.field.at(places[i].fit.place.p)).along;
             // Near an open end as seen from a little way inside: a window on the end itself would see one half only.
             const std::size_t inside = closed ? i : from_the_ends(i, 0.7 * along / step, places.size());
             for (const std::size_t from : {inside, i}) {
                 if (!measured[i]) {
-                    measured[i] = measure_from(follower, places, closed, i, from, step);
+                    measured[i] = measure_from(around, places, closed, i, from, step);
                 }
             }
         });
         fill_between(places, measured);
     }
-    std::vector<Station> kept;
+    std::vector<GapStation> kept;
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (measured[i]) {
             kept.push_back({*measured[i], false});
@@ -309,49 +143,48 @@ std::vector<Station> measure_places(const Follower& follower, std::vector<Statio
 }
 
 // How far the shorter top reaches at the gap, beyond a place, along `ahead`.
-double reach_ahead(const Follower& follower, const GapPlace& place, const Eigen::Vector3d& ahead, double look) {
-    const ScanScale scale = follower.scale_at(place.p);
+double reach_ahead(const Around& around, const GapPlace& place, const Eigen::Vector3d& ahead, double look) {
+    const ScanScale scale = around.field.at(place.p);
     const Eigen::Vector3d left = place.n.cross(place.t);
     double reach = look;
     for (const double side : {-1.0, 1.0}) {
         std::vector<double> s;
         double density = 0;
-        follower.scan().grid.for_points_in_ball(
-            place.p, look + 6 * scale.spacing, [&](const Eigen::Vector3f& q, double) {
-                const Eigen::Vector3d v = q.cast<double>() - place.p;
-                const double d = side * v.dot(left) - 0.5 * place.gap, x = v.dot(ahead);
-                const double z = v.dot(place.n) - 0.5 * side * place.mismatch;
-                if (d > 0.5 * scale.spacing && d < 8 * scale.spacing && std::abs(z) < 4 * noise_of(scale) && x < look) {
-                    if (x > 0) {
-                        s.push_back(x);
-                    } else {
-                        density += x > -look ? 1 / look : 0;
-                    }
+        around.grid.for_points_in_ball(place.p, look + 6 * scale.spacing, [&](const Eigen::Vector3f& q, double) {
+            const Eigen::Vector3d v = q.cast<double>() - place.p;
+            const double d = side * v.dot(left) - 0.5 * place.gap, x = v.dot(ahead);
+            const double z = v.dot(place.n) - 0.5 * side * place.mismatch;
+            if (d > 0.5 * scale.spacing && d < 8 * scale.spacing && std::abs(z) < 4 * noise_of(scale) && x < look) {
+                if (x > 0) {
+                    s.push_back(x);
+                } else {
+                    density += x > -look ? 1 / look : 0;
                 }
-            });
+            }
+        });
         reach = std::min(reach, end_of(s, density));
     }
     return reach;
 }
 
 // Shortens or lengthens the back of the way to where the first top ends.
-void place_end(const Follower& follower, std::vector<Station>& way, double step, double direction) {
+void place_end(const Around& around, std::vector<GapStation>& way, double step, double direction) {
     constexpr std::size_t kInside = 6;
     if (way.size() < 3 * kInside) {
         return;
     }
     const GapPlace inner = way[way.size() - 1 - kInside].fit.place;
-    const double look = 4 * static_cast<double>(kInside) * step, spacing = follower.scale_at(inner.p).spacing;
+    const double look = 4 * static_cast<double>(kInside) * step, spacing = around.field.at(inner.p).spacing;
     const Eigen::Vector3d ahead = direction * inner.t;
-    const double reach = reach_ahead(follower, inner, ahead, look) - spacing;
-    const auto at = [&](const Station& s) { return (s.fit.place.p - inner.p).dot(ahead); };
+    const double reach = reach_ahead(around, inner, ahead, look) - spacing;
+    const auto at = [&](const GapStation& s) { return (s.fit.place.p - inner.p).dot(ahead); };
     if (reach + 4 * spacing >= look) {
         return;
     }
     while (way.size() > 4 && at(way.back()) > reach - 0.5 * step) {
         way.pop_back();
     }
-    Station end = way.back();
+    GapStation end = way.back();
     const double rest = reach - at(end);
     GapPlace& place = end.fit.place;
     place.p += rest * direction * place.t;
@@ -360,9 +193,9 @@ void place_end(const Follower& follower, std::vector<Station>& way, double step,
 }
 
 // 1-sigma of a view's shift, by how far the views' points lie off the tops along the whole seam.
-double registration_of(const std::vector<Station>& way) {
+double registration_of(const std::vector<GapStation>& way) {
     std::map<std::uint32_t, GapFit::ViewOff> all;
-    for (const Station& station : way) {
+    for (const GapStation& station : way) {
         for (const auto& [view, off] : station.fit.views) {
             all[view].sum += off.sum;
             all[view].count += off.count;
@@ -381,14 +214,14 @@ double registration_of(const std::vector<Station>& way) {
     return n < 2 ? 0 : std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1)) * (1 + 0.6 / (n - 1));
 }
 
-Seam seam_of(const Around& around, const std::vector<Station>& way, bool closed) {
+Seam seam_of(const Around& around, const std::vector<GapStation>& way, bool closed) {
     const double registration = registration_of(way);
     Seam seam;
     seam.kind = JointKind::butt;
     seam.closed = closed;
     std::vector<double> gap, mismatch, spacing;
     double walls = 0, bridged = 0;
-    for (const Station& station : way) {
+    for (const GapStation& station : way) {
         const GapFit& fit = station.fit;
         const ScanScale scale = around.field.at(fit.place.p);
         const double unseen = kUnseen * noise_of(scale);
@@ -417,7 +250,7 @@ Seam seam_of(const Around& around, const std::vector<Station>& way, bool closed)
     return seam;
 }
 
-double length_of(const std::vector<Station>& way) {
+double length_of(const std::vector<GapStation>& way) {
     double length = 0;
     for (std::size_t i = 1; i < way.size(); ++i) {
         length += (way[i].fit.place.p - way[i - 1].fit.place.p).norm();
@@ -428,7 +261,7 @@ double length_of(const std::vector<Station>& way) {
 // The gap between two plates shows on their end faces, too: short, and round the corner from the end of the joint.
 bool goes_round(const Seam& shorter, const Seam& longer, double reach) {
     const auto meets = [&](const SeamPoint& a, const SeamPoint& b) {
-        return (a.p - b.p).norm() < reach && a.n1.dot(b.n1) < std::cos(2 * kMostTurn);
+        return (a.p - b.p).norm() < reach && a.n1.dot(b.n1) < std::cos(kRound);
     };
     return !longer.closed &&
            (meets(shorter.points.front(), longer.points.front()) ||
@@ -439,21 +272,20 @@ bool goes_round(const Seam& shorter, const Seam& longer, double reach) {
 }  // namespace
 
 Butts find_butts(const Around& around, const std::vector<Border>& borders, double min_length_mm) {
-    const Follower follower(around);
     const double step = around.following.step;
     Butts result;
-    for (const Way& followed : follow_all(around, follower, borders)) {
-        std::vector<Station> way = measure_places(follower, equal_steps(followed, step), followed.closed, step);
+    for (const GapWay& followed : follow_gaps(around, borders)) {
+        std::vector<GapStation> way = measure_places(around, equal_steps(followed, step), followed.closed, step);
         if (!followed.closed) {
-            place_end(follower, way, step, 1);
+            place_end(around, way, step, 1);
             std::reverse(way.begin(), way.end());
-            place_end(follower, way, step, -1);
+            place_end(around, way, step, -1);
             std::reverse(way.begin(), way.end());
         }
         const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * around.field.overall.spacing;
         const double length = length_of(way);
         const auto bridged = static_cast<std::size_t>(
-            std::count_if(way.begin(), way.end(), [](const Station& station) { return station.modelled; }));
+            std::count_if(way.begin(), way.end(), [](const GapStation& station) { return station.modelled; }));
         if (3 * bridged > way.size()) {
             continue;  // strays that line up here and there
         }
