@@ -163,9 +163,14 @@ std::string reason(const GrooveWay& way, const Seam& seam) {
     text += way.root.closed ? "and meet at the root"
                             : "and end " + fixed(median([](const GrooveStation& s) { return s.gap_mm.value; }), 2) +
                                   " mm apart at the root";
-    const bool guessed = way.root.as_other[0] || way.root.as_other[1];
-    return guessed ? text + "; the lower plate's bevel is not seen to its end and taken to be as deep as the other"
-                   : text;
+    if (way.root.as_other[0] || way.root.as_other[1]) {
+        text += "; the " + std::string(way.root.as_other[0] ? "right" : "left") +
+                " bevel is not seen to its end and taken to be as deep as the other";
+    }
+    return way.root.unseen
+               ? text +
+                     "; but a single view tells so, or that is wider than roots are prepared: it may be a shadow's end"
+               : text;
 }
 
 Seam seam_of(const GrooveWay& way, const Vector3d& origin, double registration, double spacing) {

@@ -13,7 +13,7 @@ constexpr double kSquare = 8 * std::numbers::pi / 180;  // a side more upright t
 constexpr double kDeep = 0.8;         // quantile of the depths at which an end is seen: shadows only make them less
 constexpr double kApart = 3;          // sigmas
 constexpr double kLeastNoise = 0.02;  // mm
-constexpr double kHidden = 0.5;       // share of the places that must see an end for it to be known by itself
+constexpr double kWidestRoot = 4;     // mm; ISO 9692-1 has no wider gap at the root of V, Y, U and single-bevel grooves
 
 // Gives the bevels of side k what all places tell of its angle, as far as it varies by no more than noise: the lines
 // of places that see little of the bevel are carried on further than they know themselves.
@@ -145,6 +145,31 @@ bool meets(std::span<const GrooveFit> fits, const Level& level, std::size_t k) {
     return std::abs(quantile(depths, 0.5) - level.depth) < kApart * std::sqrt(level.variance) + 2 * kLeastNoise;
 }
 
+// Whether a bevel's end is that of the other plate's shadow: less deep than the other bevel's. Plates are prepared
+// alike, to the same depth below their tops, or where unlike plates lie flush on their roots, to the same height.
+// `higher`: by how much the other top is higher.
+bool is_shadow(const Level& level, const Level& other, double higher) {
+    const double sure = kApart * std::sqrt(level.variance + other.variance), less = other.depth - level.depth;
+    return less > sure && std::abs(less - higher) > sure;
+}
+
+// Whether a second witness tells of an end: another view, or the other bevel, which ends about as deep.
+bool confirmed(const Level& level, const std::optional<Level>& other) {
+    constexpr double kLeastShare = 0.02;  // of a view that is a seventh as sure as the others
+    constexpr double kAlike = 0.05;       // of the depth
+    const auto views = std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > kLeastShare; });
+    return views > 1 || (other && std::abs(other->depth - level.depth) < kAlike * level.depth);
+}
+
+// All of the bevels below what is seen of them may lie in shadow.
+void doubt_ends(std::span<GrooveFit> fits) {
+    for (GrooveFit& fit : fits) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            fit.lower[k].sigma = std::hypot(fit.lower[k].sigma, crossing_depth(fit, k) - fit.lower[k].depth);
+        }
+    }
+}
+
 }  // namespace
 
 std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, double window) {
@@ -155,7 +180,7 @@ std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, dou
         return std::nullopt;
     }
     GrooveRoot root;
-    constexpr int kMismatch = 3, kBevel1 = 4;
+    constexpr int kGap = 2, kMismatch = 3, kBevel1 = 4;
     for (GrooveFit& fit : fits) {
         for (std::size_t k = 0; k < 2; ++k) {
             const Level& known = level[k] ? *level[k] : *level[1 - k];
@@ -167,20 +192,24 @@ std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, dou
             root.square = k;
         }
     }
-    // The end of the lower plate's bevel may lie in the shadow of the higher one's edge; plates are prepared alike.
     const double mismatch = median(fits, {}, kMismatch);
-    const std::size_t low = mismatch > 0 ? 0 : 1;
-    const bool hidden = !level[low] || (level[1 - low] &&
-                                        level[1 - low]->depth - level[low]->depth >
-                                            kApart * std::sqrt(level[0]->variance + level[1]->variance) &&
-                                        level[1 - low]->depth - level[low]->depth < std::abs(mismatch));
-    if (!root.square && hidden && level[1 - low]) {
-        root.as_other[low] = true;
-        for (GrooveFit& fit : fits) {
-            fit.lower[low] = lower_end(std::nullopt, *level[1 - low]);
+    for (std::size_t k = 0; k < 2 && !root.square; ++k) {
+        if (level[1 - k] && (!level[k] || is_shadow(*level[k], *level[1 - k], k == 0 ? mismatch : -mismatch))) {
+            root.as_other[k] = true;
+            for (GrooveFit& fit : fits) {
+                fit.lower[k] = lower_end(std::nullopt, *level[1 - k]);
+            }
         }
     }
-    root.closed = !root.square && !root.as_other[low] && meets(fits, *level[0], 0) && meets(fits, *level[1], 1);
+    const auto known = [&](std::size_t k) { return *level[root.as_other[k] ? 1 - k : k]; };
+    root.closed = !root.square && meets(fits, known(0), 0) && meets(fits, known(1), 1);
+    const auto deepest = root.square ? static_cast<std::size_t>(1 - *root.square)
+                                     : static_cast<std::size_t>(!level[0] || root.as_other[0]);
+    root.unseen = !root.closed && (median(fits, root, kGap) > kWidestRoot || !level[deepest] ||
+                                   !confirmed(*level[deepest], root.square ? std::nullopt : level[1 - deepest]));
+    if (root.unseen) {
+        doubt_ends(fits);
+    }
     return root;
 }
 

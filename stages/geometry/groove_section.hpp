@@ -68,6 +68,7 @@ struct GrooveRoot {
     bool closed = false;                         ///< the bevels meet in a line
     std::optional<int> square;                   ///< the side without a bevel
     std::array<bool, 2> as_other{false, false};  ///< the bevel's end is hidden, and taken to be as deep as the other's
+    bool unseen = false;  ///< the bevels may go on in shadow: no root is so wide, or nothing confirms the end
 };
 
 /// Of one place, as measured: the numbers hang on what the root is.

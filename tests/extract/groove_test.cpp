@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "datasets/dataset.hpp"
@@ -10,6 +11,7 @@
 #include "stages/geometry/robust.hpp"
 #include "stages/place/place.hpp"
 #include "stages/validate/validate.hpp"
+#include "tests/accuracy/measure.hpp"
 #include "tests/extract/support.hpp"
 
 namespace seampath {
@@ -91,6 +93,34 @@ INSTANTIATE_TEST_SUITE_P(Extract, GrooveScene,
                                            Case{"SingleBevel", plates(2, 0.4, 1.5, 50, true)},
                                            Case{"Arc", plates(2, 0.3, 1.5, 80, false, Course::arc)}),
                          [](const auto& tested) { return tested.param.name; });
+
+// Deep and narrow: no view reaches the root (12, 28), or one bevel's end only (20), and a bevel seems to end where a
+// shadow begins. Such a seam must say that it is unsure, and get no program.
+class DeepGroove : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Grooves, DeepGroove, testing::Values(12, 20, 28), testing::PrintToStringParamName());
+
+TEST_P(DeepGroove, WithoutASecondWitnessIsNotSure) {
+    SceneOptions scene;
+    scene.kind = SceneKind::v_groove;
+    scene.length_mm = 70;
+    scene.margin_mm = 18;
+    const Dataset dataset = make_dataset(scene, {}, GetParam());
+    const Scan scan = scan_of(dataset);
+    const Extraction extraction = extract(scan, {});
+    ASSERT_EQ(extraction.seams.size(), 1u);
+    const Seam& seam = extraction.seams.front();
+    std::size_t kept = 0;
+    for (const SeamPoint& point : seam.points) {
+        double off = 1e300;
+        for (const TruthPoint& t : dataset.truth.seams.front().points) {
+            off = std::min(off, (point.p - t.p).norm());
+        }
+        kept += off < 2 * point.sigma_mm;
+    }
+    EXPECT_GE(kept, 0.92 * static_cast<double>(seam.points.size()));
+    EXPECT_THAT(seam.kind_reason, testing::HasSubstr("shadow"));
+    EXPECT_FALSE(validate(fit(seam, place(seam, {}), {}), scan, {}).pass);
+}
 
 TEST(Grooves, AreNoneInAFillet) {
     SceneOptions o;
