@@ -109,9 +109,18 @@ Densities measure_butt(const Ground& ground, const SeamModel& model, const ArcLe
     const ViewedPoints points{ground.grid, ground.views};
     GapPlace place{sample.p - ground.origin, t, n, 0, 0, (turned(to) - turned(from)).dot(n.cross(t)) / (to - from)};
     const auto guess = find_gap(points, ground.scale, place, 0.3 * ground.window.along);
-    const auto fit =
-        guess ? settle_gap(points, ground.scale, *guess, within_bend(ground.window, guess->bend, ground.scale), 2)
-              : std::nullopt;
+    if (!guess) {
+        return {0, 0};
+    }
+    const SectionWindow window = within_bend(ground.window, guess->bend, ground.scale);
+    auto fit = settle_gap(points, ground.scale, *guess, window, 2);
+    if (!fit) {
+        // A gap hardly wider than points are apart is told by few of them: about the model's own middle, then.
+        GapPlace narrow = *guess;
+        narrow.p = place.p + (guess->p - place.p).dot(n) * n;
+        narrow.gap = 1.2 * ground.scale.spacing;
+        fit = settle_gap(points, ground.scale, narrow, window, 2);
+    }
     if (!fit) {
         return {0, 0};
     }

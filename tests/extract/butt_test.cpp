@@ -66,6 +66,14 @@ TEST(ButtsBySign, PlateTwoIsOnTheLeft) {
     EXPECT_NEAR(seam.groove[middle].mismatch_mm.value, sign * 1.2, 0.05);
 }
 
+TEST(ButtsValidated, DownToOneAndAHalfPointDistances) {
+    for (const double mismatch : {0.6, 1.2}) {
+        const Accuracy accuracy = measure_accuracy(make_dataset(butt(0.3, mismatch), {}, 2));
+        EXPECT_EQ(accuracy.passed, 1u) << mismatch;
+        EXPECT_GT(accuracy.least_coverage, 0.95) << mismatch;
+    }
+}
+
 TEST(ButtsForced, AndAutomaticAgree) {
     ExtractOptions options;
     options.joint = JointChoice::butt;
