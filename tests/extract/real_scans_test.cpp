@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <iostream>
+#include <numbers>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -112,6 +114,62 @@ INSTANTIATE_TEST_SUITE_P(DepthCamera, RealScans,
 
 // A bent tube alone: nothing to weld.
 INSTANTIATE_TEST_SUITE_P(WithoutSeam, RealScans, testing::Values(RealScan{"tube/coil_scan00.ply", {}, 0}));
+
+Vector3d mean_normal(const Seam& seam, bool second) {
+    Vector3d sum = Vector3d::Zero();
+    for (const SeamPoint& point : seam.points) {
+        sum += second ? point.n2 : point.n1;
+    }
+    return sum.normalized();
+}
+
+Vector3d middle(const Seam& seam) {
+    Vector3d sum = Vector3d::Zero();
+    for (const SeamPoint& point : seam.points) {
+        sum += point.p;
+    }
+    return sum / static_cast<double>(seam.points.size());
+}
+
+// The cross-bar lies on the table, the post's seam on top of it: they are as far apart as the tube is wide.
+TEST(TeeAgainstItsDrawing, TubeWidthAndAngle) {
+    const auto drawing = real_scan("tee_lidar/cad_tee.ply");
+    if (!drawing) {
+        GTEST_SKIP() << "the real scans are not on this machine";
+    }
+    Eigen::Vector3f low = drawing->points.front(), high = low;
+    for (const Eigen::Vector3f& p : drawing->points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double width = (high - low).minCoeff(), kSensor = 1.15;
+    EXPECT_NEAR(width, 50.8, 0.1) << "two inches";
+    for (const char* file : {"x0y24", "x4y24_45", "longclamps_x4y24_45"}) {
+        const auto scan = real_scan("tee_lidar/table_8in10in_tee_" + std::string(file) + ".pcd");
+        ASSERT_TRUE(scan);
+        const std::vector<Seam> seams = extract(*scan, {}).seams;
+        ASSERT_EQ(seams.size(), 2u) << file;
+        const Seam &bar = seams[0], &post = seams[1];
+        Vector3d up = Vector3d::Zero();  // of the table: the flank that both seams have alike
+        double alike = -1;
+        for (const bool i : {false, true}) {
+            for (const bool j : {false, true}) {
+                const double c = mean_normal(bar, i).dot(mean_normal(post, j));
+                up = c > alike ? mean_normal(bar, i) : up;
+                alike = std::max(alike, c);
+            }
+        }
+        const double high_mm = (middle(post) - middle(bar)).dot(up);
+        const Vector3d a = bar.points.back().p - bar.points.front().p, b = post.points.back().p - post.points.front().p;
+        const double angle = std::acos(std::abs(a.dot(b)) / (a.norm() * b.norm())) * 180 / std::numbers::pi;
+        std::cout << file << ": tube " << high_mm << " mm wide (drawing " << width << "), angle " << angle
+                  << " deg (drawing 90), sigma of the post's seam " << post.points[post.points.size() / 2].sigma_mm
+                  << " mm\n";
+        EXPECT_NEAR(high_mm, width, kSensor) << file;
+        // The ends of the post's seam, each as sure as the sensor.
+        EXPECT_NEAR(angle, 90, std::atan(std::sqrt(2.0) * kSensor / b.norm()) * 180 / std::numbers::pi) << file;
+    }
+}
 
 }  // namespace
 }  // namespace seampath
