@@ -8,6 +8,7 @@
 
 #include "stages/extract/folds.hpp"
 #include "stages/extract/join.hpp"
+#include "stages/extract/jumps.hpp"
 #include "stages/extract/registration.hpp"
 #include "stages/extract/whole.hpp"
 #include "stages/geometry/robust.hpp"
@@ -263,6 +264,7 @@ Laps find_laps(const Around& around, const std::vector<Border>& borders, const L
         measuring.window_of = measuring_window;
         measuring.wall = lap.thickness;
         share_angle(measuring, lap.measured.way);
+        lap.measured.way = without_jumps(std::move(lap.measured.way), lap.measured.closed);
         settle_on_whole_flanks(measuring, registration_that_counts(measuring, result.registration_mm),
                                lap.measured.way);
         result.seams.push_back(seam_of(lap, around.scan.origin_mm, asked));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stages/extract/ends.hpp"
+#include "stages/extract/jumps.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
 
@@ -138,7 +139,8 @@ std::optional<std::vector<TrackPoint>> measure_track(const Tracker& following, c
     Tracker tracker = following;
     tracker.window_of = measuring_window;
     const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
-    std::vector<TrackPoint> way = without_outliers(measure_places(following, tracker, places, track.closed));
+    std::vector<TrackPoint> way =
+        without_jumps(without_outliers(measure_places(following, tracker, places, track.closed)), track.closed);
     if (!is_joint(tracker, way, places.size())) {
         return std::nullopt;
     }
