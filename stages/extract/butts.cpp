@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "stages/extract/ends.hpp"
+#include "stages/extract/equal_steps.hpp"
 #include "stages/extract/gap_way.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
@@ -19,29 +20,14 @@ constexpr double kRound = 40 * std::numbers::pi / 180;  // between the tops of t
 constexpr double kLeastLength = 40;                     // of a seam, in point distances
 constexpr double kUnseen = 0.2;  // noises by which an edge's place is doubtful beyond what its witnesses scatter
 
-// Places at equal distances along the way.
-std::vector<GapStation> equal_steps(const GapWay& way, double step) {
-    std::vector<GapStation> from = way.at;
-    if (way.closed) {
-        from.push_back(from.front());
-    }
-    std::vector<double> station(from.size(), 0);
-    for (std::size_t i = 1; i < from.size(); ++i) {
-        station[i] = station[i - 1] + (from[i].fit.place.p - from[i - 1].fit.place.p).norm();
-    }
-    const auto count = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(station.back() / step)));
-    std::vector<GapStation> places;
-    for (std::size_t k = 0, i = 1; k < count + (way.closed ? 0 : 1); ++k) {
-        const double s = station.back() * static_cast<double>(k) / static_cast<double>(count);
-        while (i + 1 < from.size() && station[i] < s) {
-            ++i;
-        }
-        const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
-        GapStation place = x < 0.5 ? from[i - 1] : from[i];
-        place.fit.place = between(from[i - 1].fit.place, from[i].fit.place, x);
-        places.push_back(place);
-    }
-    return places;
+std::vector<GapStation> at_equal_steps(const GapWay& way, double step) {
+    return equal_steps(
+        way.at, way.closed, step, [](const GapStation& s) -> const Eigen::Vector3d& { return s.fit.place.p; },
+        [](const GapStation& a, const GapStation& b, double x) {
+            GapStation station = x < 0.5 ? a : b;
+            station.fit.place = between(a.fit.place, b.fit.place, x);
+            return station;
+        });
 }
 
 // Place i with the direction and bend that the way has over `reach` mm before and behind: those of a single place are
@@ -50,7 +36,7 @@ GapPlace guess_at(const std::vector<GapStation>& places, bool closed, std::size_
     const auto n = static_cast<std::ptrdiff_t>(places.size());
     auto half = static_cast<std::ptrdiff_t>(std::lround(reach / step));
     const auto at = static_cast<std::ptrdiff_t>(i);
-    half = std::max<std::ptrdiff_t>(2, std::min(half, (n - 1) / 2));
+    half = std::clamp<std::ptrdiff_t>(half, 1, (n - 1) / 2);  // at least three places
     const std::ptrdiff_t middle = closed ? at : std::clamp(at, half, n - 1 - half);
     const auto place = [&](std::ptrdiff_t k) -> const GapPlace& {
         return places[static_cast<std::size_t>((k + n) % n)].fit.place;
@@ -275,7 +261,7 @@ Butts find_butts(const Around& around, const std::vector<Border>& borders, doubl
     const double step = around.following.step;
     Butts result;
     for (const GapWay& followed : follow_gaps(around, borders)) {
-        std::vector<GapStation> way = measure_places(around, equal_steps(followed, step), followed.closed, step);
+        std::vector<GapStation> way = measure_places(around, at_equal_steps(followed, step), followed.closed, step);
         if (!followed.closed) {
             place_end(around, way, step, 1);
             std::reverse(way.begin(), way.end());

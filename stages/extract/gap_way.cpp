@@ -12,6 +12,7 @@ constexpr double kLeastGap = 1.1;  // point distances; what is narrower is not s
 constexpr double kMostTurn = 20 * std::numbers::pi / 180;  // of the direction, per step of following
 constexpr double kMostJump = 25;                           // mm without a gap to be seen, which tacks bridge
 constexpr std::size_t kMostSteps = 20000;
+constexpr std::size_t kFewest = 3;  // places; what is seen at fewer is no gap
 
 class Follower {
 public:
@@ -165,7 +166,9 @@ std::vector<GapWay> follow_gaps(const Around& around, const std::vector<Border>&
             GapWay way = follower.follow(*seed);
             // A way that had broken off before is found again by one that goes further.
             std::erase_if(ways, [&](const GapWay& other) { return runs_along(other, way, follower.step()); });
-            ways.push_back(std::move(way));
+            if (way.at.size() >= kFewest) {
+                ways.push_back(std::move(way));
+            }
         }
     }
     return ways;

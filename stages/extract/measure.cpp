@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stages/extract/ends.hpp"
+#include "stages/extract/equal_steps.hpp"
 #include "stages/extract/jumps.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
@@ -13,32 +14,18 @@ namespace {
 
 constexpr std::size_t kLeastPlaces = 6;  // fewer carry no curve
 
-// Places at equal distances, along the polyline of the track; open tracks keep both ends.
-std::vector<TrackPoint> equal_steps(const Track& track, double step) {
-    std::vector<TrackPoint> way = track.points;
-    if (track.closed) {
-        way.push_back(way.front());
-    }
-    std::vector<double> station(way.size(), 0);
-    for (std::size_t i = 1; i < way.size(); ++i) {
-        station[i] = station[i - 1] + (way[i].section.p - way[i - 1].section.p).norm();
-    }
-    const auto count = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(station.back() / step)));
-    std::vector<TrackPoint> places;
-    for (std::size_t k = 0, i = 1; k < count + (track.closed ? 0 : 1); ++k) {
-        const double s = station.back() * static_cast<double>(k) / static_cast<double>(count);
-        while (i + 1 < way.size() && station[i] < s) {
-            ++i;
-        }
-        const double x = std::clamp((s - station[i - 1]) / std::max(1e-12, station[i] - station[i - 1]), 0.0, 1.0);
-        const Section &a = way[i - 1].section, &b = way[i].section;
-        TrackPoint place = x < 0.5 ? way[i - 1] : way[i];
-        place.section = {(1 - x) * a.p + x * b.p, ((1 - x) * a.n1 + x * b.n1).normalized(),
-                         ((1 - x) * a.n2 + x * b.n2).normalized()};
-        places.push_back(place);
-    }
-    return places;
+std::vector<TrackPoint> at_equal_steps(const Track& track, double step) {
+    return equal_steps(
+        track.points, track.closed, step, [](const TrackPoint& p) -> const Eigen::Vector3d& { return p.section.p; },
+        [](const TrackPoint& a, const TrackPoint& b, double x) {
+            TrackPoint place = x < 0.5 ? a : b;
+            place.section = {(1 - x) * a.section.p + x * b.section.p,
+                             ((1 - x) * a.section.n1 + x * b.section.n1).normalized(),
+                             ((1 - x) * a.section.n2 + x * b.section.n2).normalized()};
+            return place;
+        });
 }
+
 // Hundreds of points that leave the seam less sure than two scan points do not see two surfaces: fits shrink to that in
 // the smooth valleys of bent or badly fused parts.
 bool unsure(const Tracker& tracker, const TrackPoint& point) {
@@ -138,7 +125,7 @@ bool is_joint(const Tracker& tracker, const std::vector<TrackPoint>& way, std::s
 std::optional<std::vector<TrackPoint>> measure_track(const Tracker& following, const Track& track) {
     Tracker tracker = following;
     tracker.window_of = measuring_window;
-    const std::vector<TrackPoint> places = equal_steps(track, tracker.step);
+    const std::vector<TrackPoint> places = at_equal_steps(track, tracker.step);
     std::vector<TrackPoint> way =
         without_jumps(without_outliers(measure_places(following, tracker, places, track.closed)), track.closed);
     if (!is_joint(tracker, way, places.size())) {
