@@ -47,6 +47,8 @@ Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, s
     }
     for (int i = 0; i < scanner.views; ++i) {
         const View view = take_view(made, scanner, seed, i, threads);
+        dataset.views.push_back(
+            {dataset.points.size(), dataset.scan_from_scene * view.error * dataset.scan_from_scene.inverse()});
         for (const Eigen::Vector3d& p : view.points) {
             if (!std::isnan(p.x())) {
                 dataset.points.emplace_back((dataset.scan_from_scene * p).cast<float>());

@@ -13,6 +13,14 @@
 /// Scans with known truth.
 namespace seampath {
 
+/// One of the views that a scan was put together from.
+struct DatasetView {
+    std::size_t first_point = 0;  ///< of the scan's points
+    /// How the view's registration moved its points, scan frame: what lies at p was reported, noise aside, at error *
+    /// p.
+    Eigen::Affine3d error = Eigen::Affine3d::Identity();
+};
+
 struct Dataset {
     SceneOptions scene;  ///< as made: every dimension set
     ScannerOptions scanner;
@@ -21,7 +29,8 @@ struct Dataset {
     std::vector<Eigen::Vector3f> points;                                ///< all views in one, mm, scan frame
     std::uint32_t width = 0;  ///< raster of an organised scan, whose gaps are NaN; otherwise 0
     std::uint32_t height = 0;
-    Truth truth;  ///< scan frame
+    std::vector<DatasetView> views;  ///< in the order of their points
+    Truth truth;                     ///< scan frame
 };
 
 /// A scan of a scene and its truth, all from one seed: the same bytes on any machine and any number of threads

@@ -51,6 +51,15 @@ ordered_json to_json(const TruthSeam& seam) {
     return object;
 }
 
+ordered_json to_json(const DatasetView& view) {
+    ordered_json rows = ordered_json::array();
+    for (int row = 0; row < 3; ++row) {
+        const auto& m = view.error.matrix();
+        rows.push_back({m(row, 0), m(row, 1), m(row, 2), m(row, 3)});
+    }
+    return {{"first_point", view.first_point}, {"error", std::move(rows)}};
+}
+
 ordered_json to_json(const Dataset& dataset) {
     SceneOptions scene = dataset.scene;
     ScannerOptions scanner = dataset.scanner;
@@ -60,12 +69,17 @@ ordered_json to_json(const Dataset& dataset) {
     for (const TruthSeam& seam : dataset.truth.seams) {
         seams.push_back(to_json(seam));
     }
+    ordered_json views = ordered_json::array();
+    for (const DatasetView& view : dataset.views) {
+        views.push_back(to_json(view));
+    }
     return {{"format", "seampath truth"},
             {"version", kTruthVersion},
             {"seed", dataset.seed},
             {"scene", fields_json(describe(scene))},
             {"scanner", fields_json(describe(scanner))},
             {"scan_from_scene", {{"xyz_mm", {t.x(), t.y(), t.z()}}, {"qwxyz", {q.w(), q.x(), q.y(), q.z()}}}},
+            {"views", std::move(views)},
             {"seams", std::move(seams)}};
 }
 

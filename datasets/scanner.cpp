@@ -114,9 +114,8 @@ public:
     }
 
     View develop(unsigned threads) const {
-        View view{station_.width, station_.height, {}};
+        View view{station_.width, station_.height, {}, view_error(scene_.box.center(), o_, seed_, random(kPose))};
         view.points.assign(sights_.size(), Vector3d::Constant(kNone));
-        const Eigen::Affine3d error = view_error(scene_.box.center(), o_, seed_, random(kPose));
         const Random path = random(kPath);
         for_rows(station_.height, threads, [&](std::uint32_t row) {
             const Vector3d eye = station_.eye(row) + path_error(o_, path, row);
@@ -124,7 +123,7 @@ public:
                 const std::size_t pixel = std::size_t{row} * station_.width + column;
                 const double depth = measured_depth(column, row, pixel);
                 if (!std::isnan(depth)) {
-                    view.points[pixel] = error * seen_point(eye + depth * station_.sight(column, row), pixel);
+                    view.points[pixel] = view.error * seen_point(eye + depth * station_.sight(column, row), pixel);
                 }
             }
         });

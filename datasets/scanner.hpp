@@ -56,6 +56,8 @@ struct View {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<Eigen::Vector3d> points;
+    /// Error of the view as a whole: a point at p is reported, its noise aside, at error * p.
+    Eigen::Affine3d error = Eigen::Affine3d::Identity();
 };
 
 /// View `index` of options.views. The same for any number of threads.

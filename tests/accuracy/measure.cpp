@@ -9,6 +9,7 @@
 #include "stages/place/place.hpp"
 #include "stages/text.hpp"
 #include "stages/validate/validate.hpp"
+#include "tests/accuracy/common_error.hpp"
 
 namespace seampath {
 namespace {
@@ -86,6 +87,10 @@ Accuracy measure_accuracy(const Dataset& dataset, const ExtractOptions& options)
     a.true_seams = dataset.truth.seams.size();
     a.extracted = score(extraction.seams, dataset.truth);
     a.fitted = score(models, dataset.truth);
+    const Truth moved = moved_with_views(dataset);
+    a.common_mm = common_error(dataset.truth, moved);
+    a.extracted_apart = score(extraction.seams, moved);
+    a.fitted_apart = score(models, moved);
     compare_with_sigma(extraction.seams, dataset.truth, a);
     return a;
 }

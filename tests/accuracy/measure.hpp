@@ -31,6 +31,11 @@ struct Accuracy {
     std::size_t true_seams = 0;
     Score extracted;
     Score fitted;
+    /// What of that error the views have in common, rms, mm (tests/accuracy/common_error.hpp), and the scores against
+    /// the truth that is moved by it.
+    double common_mm = 0;
+    Score extracted_apart;
+    Score fitted_apart;
     double within_1_sigma = 0;    ///< share of extracted points whose distance from the truth is below their sigma
     double within_2_sigma = 0;    ///< below twice their sigma
     double validated_rms_mm = 0;  ///< largest of all models

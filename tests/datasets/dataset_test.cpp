@@ -149,6 +149,24 @@ TEST(Dataset, PoseCanBeLeftOut) {
     EXPECT_TRUE(dataset.scan_from_scene.isApprox(Eigen::Isometry3d::Identity(), 0));
 }
 
+TEST(Dataset, ViewsAreWhereTheirErrorsMovedThem) {
+    ScannerOptions scanner = coarse();
+    scanner.registration_mm = scanner.registration_deg = 0;
+    const Dataset still = make(0, 1, scanner);
+    scanner.registration_mm = 0.4;
+    scanner.registration_deg = 0.2;
+    const Dataset moved = make(0, 1, scanner);
+    ASSERT_EQ(moved.points.size(), still.points.size());
+    ASSERT_EQ(moved.views.size(), 2U);
+    EXPECT_EQ(moved.views[0].first_point, 0U);
+    for (std::size_t i = 0; i < moved.points.size(); i += 7) {
+        const Eigen::Affine3d& error = moved.views[i < moved.views[1].first_point ? 0 : 1].error;
+        // Without errors of registration there is still one of size, alike for all views.
+        const Eigen::Vector3d seen = still.views[0].error.inverse() * still.points[i].cast<double>();
+        EXPECT_LT((error * seen - moved.points[i].cast<double>()).norm(), 1e-4) << i;
+    }
+}
+
 TEST(Dataset, OrganisedScanKeepsItsRaster) {
     ScannerOptions scanner = coarse();
     scanner.organised = true;
