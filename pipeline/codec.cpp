@@ -1,7 +1,9 @@
 #include "pipeline/codec.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <type_traits>
 
@@ -110,10 +112,32 @@ void members(auto& archive, Is<Waypoint> auto& v) {
     archive("speed_mm_s", speed_mm_s)("time_s", time_s)("sigma_mm", sigma_mm);
 }
 
+void members(auto& archive, Is<PlannedPass> auto& v) {
+    auto& [seam, layer, bead, across_mm, up_mm, tilt_rad, area_mm2, least_mm2, most_mm2] = v;
+    archive("seam", seam)("layer", layer)("bead", bead)("across_mm", across_mm)("up_mm", up_mm);
+    archive("tilt_rad", tilt_rad)("area_mm2", area_mm2)("least_mm2", least_mm2)("most_mm2", most_mm2);
+}
+
+void members(auto& archive, Is<ArmSample> auto& v) {
+    auto& [seam, kind, waypoint, station_mm, time_s, q, roll, manipulability] = v;
+    archive("seam", seam)("kind", kind)("waypoint", waypoint)("station_mm", station_mm)("time_s", time_s);
+    archive("q_rad", q)("roll_rad", roll)("manipulability_m3", manipulability);
+}
+
+void members(auto& archive, Is<ArmTravel> auto& v) {
+    auto& [arm, pass, verdict, lowest, highest, max_speed, max_acceleration, speed_share, acceleration_share,
+           least_margin, least_manipulability, max_roll, duration_s, samples, shift_mm] = v;
+    archive("arm", arm)("pass", pass)("verdict", verdict)("lowest_rad", lowest)("highest_rad", highest);
+    archive("max_speed_rad_s", max_speed)("max_acceleration_rad_s2", max_acceleration);
+    archive("speed_share", speed_share)("acceleration_share", acceleration_share);
+    archive("least_margin_rad", least_margin)("least_manipulability_m3", least_manipulability);
+    archive("max_roll_rad", max_roll)("duration_s", duration_s)("samples", samples)("shift_mm", shift_mm);
+}
+
 void members(auto& archive, Is<Plan> auto& v) {
-    auto& [waypoints, max_chord_error_mm, max_speed_error, max_turn_deg, duration_s] = v;
+    auto& [waypoints, max_chord_error_mm, max_speed_error, max_turn_deg, duration_s, passes, arm] = v;
     archive("waypoints", waypoints)("max_chord_error_mm", max_chord_error_mm)("max_speed_error", max_speed_error);
-    archive("max_turn_deg", max_turn_deg)("duration_s", duration_s);
+    archive("max_turn_deg", max_turn_deg)("duration_s", duration_s)("passes", passes)("arm", arm);
 }
 
 // The rest of the text of a scan is for people.
@@ -145,6 +169,15 @@ public:
 
     template <class T>
     static Json put(const std::vector<T>& values) {
+        Json list = Json::array();
+        for (const auto& value : values) {
+            list.push_back(put(value));
+        }
+        return list;
+    }
+
+    template <class T, std::size_t n>
+    static Json put(const std::array<T, n>& values) {
         Json list = Json::array();
         for (const auto& value : values) {
             list.push_back(put(value));
@@ -208,6 +241,13 @@ public:
         }
     }
 
+    template <class T, std::size_t n>
+    static void get(const Json& json, std::array<T, n>& values) {
+        for (std::size_t i = 0; i < n; ++i) {
+            get(json.at(i), values[i]);
+        }
+    }
+
     template <class T>
     static void get(const Json& json, std::optional<T>& value) {
         value.reset();
@@ -254,9 +294,10 @@ std::string to_text(const T& value) {
 template <class T>
 void from_text(std::string_view text, T& value) {
     try {
-        T read;
-        Reader::get(parse_json(text), read);
-        value = std::move(read);
+        // On the heap: GCC 12 warns of an optional's members that could be uninitialised where they are not.
+        const auto read = std::make_unique<T>();
+        Reader::get(parse_json(text), *read);
+        value = std::move(*read);
     } catch (const Json::exception& error) {
         throw std::runtime_error(error.what());
     }

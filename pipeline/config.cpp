@@ -167,17 +167,17 @@ void apply_override(const std::vector<Section>& sections, const Override& given,
                problems);
 }
 
-/// What no single field's bounds can say, under the origin that set the option last.
-void check_export(const Config& config, const std::string& file, std::span<const Override> overrides,
-                  Problems& problems) {
-    for (const std::string& problem : export_problems(config.export_)) {
+/// What no single field's bounds can say, each under the origin that set the option last.
+void add_problems(const std::vector<std::string>& found, const std::string& stage, const std::string& file,
+                  std::span<const Override> overrides, Problems& problems) {
+    for (const std::string& problem : found) {
         const auto colon = problem.find(": ");
         const std::string key = problem.substr(0, colon);
         std::string origin = file;
         for (const auto& given : overrides) {
-            origin = given.path == "export." + key ? given.origin : origin;
+            origin = given.path == stage + "." + key ? given.origin : origin;
         }
-        problems.add(origin, "/export/" + key, problem.substr(colon + 2));
+        problems.add(origin, "/" + stage + "/" + key, problem.substr(colon + 2));
     }
 }
 
@@ -215,7 +215,8 @@ Config parse_config(std::string_view text, const std::string& file_name, std::sp
     for (const auto& given : overrides) {
         apply_override(sections, given, problems);
     }
-    check_export(config, file_name, overrides, problems);
+    add_problems(plan_problems(config.plan), "plan", file_name, overrides, problems);
+    add_problems(export_problems(config.export_), "export", file_name, overrides, problems);
     problems.throw_if_any();
     return config;
 }

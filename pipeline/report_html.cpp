@@ -2,6 +2,7 @@
 #include <array>
 
 #include "pipeline/report.hpp"
+#include "pipeline/report_arm.hpp"
 #include "pipeline/report_assets.hpp"
 #include "pipeline/report_plots.hpp"
 #include "pipeline/report_rows.hpp"
@@ -277,7 +278,8 @@ std::string report_html(const PartResult& part) {
     for (std::size_t i = 0; i < report.seams.size(); ++i) {
         html += seam_section(part, report, i);
     }
-    html += program_table(report) + scan_section(report) + settings_table(report) + stage_table(report);
+    html +=
+        program_table(report) + arm_section(part) + scan_section(report) + settings_table(report) + stage_table(report);
     html += "<footer>Lengths in mm, positions in the frame of the " +
             std::string(part.nominal ? "nominal dimensions" : "scan") +
             ". Seams are numbered from 0 as in the files beside "

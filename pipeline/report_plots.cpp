@@ -211,6 +211,7 @@ std::vector<PlotPoint> torch_speeds(const PartResult& part, std::size_t seam) {
         if (w.seam != number || !welding) {
             continue;
         }
+        before = w.kind == WaypointKind::weld_start ? nullptr : before;  // of another pass
         if (before != nullptr && w.time_s > before->time_s) {
             const double speed = (w.p - before->p).norm() / (w.time_s - before->time_s);
             speeds.push_back({before->station_mm, speed});

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/fields.hpp"
+#include "pipeline/report_arm.hpp"
 #include "pipeline/report_seams.hpp"
 #include "pipeline/report_text.hpp"
 #include "stages/error.hpp"
@@ -68,7 +69,7 @@ ReportRows path_rows(const PartResult& part) {
     for (const ProgramFile& file : part.programs) {
         read_back = std::max(read_back, file.max_position_error_mm);
     }
-    return {
+    ReportRows rows{
         count("waypoints", "Waypoints", part.plan.waypoints.size()),
         number("path_chord_error_mm", "Straight moves from the curve, largest", part.plan.max_chord_error_mm, "mm"),
         number("max_speed_error_percent", "Torch speed error, largest", 100 * part.plan.max_speed_error, "%", 2),
@@ -77,6 +78,14 @@ ReportRows path_rows(const PartResult& part) {
         count("programs", "Program files", part.programs.size()),
         number("read_back_error_mm", "Program position error, largest", read_back, "mm", 6),
     };
+    if (!part.plan.passes.empty()) {
+        rows.push_back(count("passes", "Passes", part.plan.passes.size()));
+    }
+    if (part.plan.arm) {
+        const ReportRows arm = arm_rows(*part.plan.arm);
+        rows.insert(rows.end(), arm.begin(), arm.end());
+    }
+    return rows;
 }
 
 /// Of the seams of a nominal part, then of those that were found in a scan.
@@ -138,13 +147,14 @@ std::vector<ReportSetting> settings_of(const Config& config) {
 
 std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
     const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
+    const std::string arm = part.plan.arm && !part.plan.arm->pass ? "; " + valid_utf8(part.plan.arm->verdict) : "";
     if (part.nominal) {
-        return found + " from nominal dimensions; not compared with a scan";
+        return found + " from nominal dimensions; not compared with a scan" + arm;
     }
     if (part.models.empty()) {
         return "No seam was found in this scan";
     }
-    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces";
+    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces" + arm;
 }
 
 }  // namespace

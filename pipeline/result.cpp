@@ -5,6 +5,9 @@
 namespace seampath {
 
 bool PartResult::pass() const {
+    if (plan.arm && !plan.arm->pass) {
+        return false;
+    }
     if (nominal) {
         return !models.empty();
     }

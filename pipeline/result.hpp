@@ -34,7 +34,9 @@ struct PartResult {
     std::vector<ProgramFile> programs;
     std::vector<StageTiming> timings;
 
-    bool pass() const;  ///< at least one seam, and all of them in tolerance, where there is a scan to hold them against
+    /// At least one seam, and all of them in tolerance, where there is a scan to hold them against; and an arm, where
+    /// one is given, that makes the travel.
+    bool pass() const;
 };
 
 }  // namespace seampath

@@ -2,11 +2,13 @@
 
 #include <set>
 
+#include "pipeline/arms.hpp"
 #include "pipeline/digest.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/summary.hpp"
 #include "pipeline/tables.hpp"
 #include "pipeline/walk.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -23,24 +25,55 @@ std::vector<int> seams_to_weld(const PartResult& part) {
     return seams;
 }
 
-Plan plan_seams(const PartResult& part) {
+Eigen::Isometry3d pose_of(const std::vector<double>& p) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = Eigen::Vector3d(p.at(0), p.at(1), p.at(2));
+    pose.linear() = Eigen::Quaterniond(p.at(3), p.at(4), p.at(5), p.at(6)).normalized().toRotationMatrix();
+    return pose;
+}
+
+/// The arm of plan.arm in its place, and what a plan with it depends on beside the plan's own options.
+struct Cell {
+    std::optional<ArmCell> arm;
+    std::string input;
+};
+
+Cell cell_of(const Config& config) {
+    if (config.plan.arm.empty()) {
+        return {};
+    }
+    const ArmFile file = load_arm(config.plan.arm);
+    std::string input = file.text;
+    for (const double number : config.export_.base_from_scan) {
+        input += "\n" + shortest(number);
+    }
+    return {ArmCell{file.arm, pose_of(config.export_.base_from_scan), pose_of(config.plan.flange_from_tool)}, input};
+}
+
+Plan plan_seams(const PartResult& part, const Cell& cell) {
     std::vector<SeamModel> models;
     for (const int i : part.planned_seams) {
         models.push_back(part.models.at(static_cast<std::size_t>(i)));
     }
-    return models.empty() ? Plan() : plan(models, part.config.plan);
+    return models.empty() ? Plan() : plan(models, part.config.plan, cell.arm);
+}
+
+/// Whether anything may be written that a robot runs.
+bool may_export(const PartResult& part) {
+    const bool reached = !part.plan.arm || part.plan.arm->pass || part.config.export_.even_if_out_of_tolerance;
+    return !part.planned_seams.empty() && reached;
 }
 
 /// From the models to the programs, for `part.planned_seams`.
-void plan_and_export(PartResult& part, Walk& walk, const std::string& input) {
+void plan_and_export(PartResult& part, Walk& walk, const Cell& cell, const std::string& input) {
     walk.stage(
-        "plan", part.plan, [&] { return plan_seams(part); }, plan_summary, input);
+        "plan", part.plan, [&] { return plan_seams(part, cell); }, plan_summary, input + cell.input);
 
     walk.always(
         "export",
         [&] {
-            part.programs = part.planned_seams.empty() ? std::vector<ProgramFile>()
-                                                       : export_programs(part.plan, part.config.export_);
+            part.programs =
+                may_export(part) ? export_programs(part.plan, part.config.export_) : std::vector<ProgramFile>();
         },
         export_summary);
 }
@@ -48,6 +81,7 @@ void plan_and_export(PartResult& part, Walk& walk, const std::string& input) {
 /// From the scan to the programs, stage by stage.
 void walk_stages(PartResult& part, Walk& walk) {
     const Config& config = part.config;
+    const Cell cell = cell_of(config);  // what is wrong with an arm shows before the work
     const auto& seams = part.extraction.seams;
     walk.stage(
         "extract", part.extraction, [&] { return extract(part.scan, config.extract); }, extract_summary);
@@ -65,13 +99,13 @@ void walk_stages(PartResult& part, Walk& walk) {
         "validate", part.deviations, [&] { return walk.each(seams.size(), validate_seam); }, validate_summary);
 
     part.planned_seams = seams_to_weld(part);
-    plan_and_export(part, walk, config.export_.even_if_out_of_tolerance ? "all seams" : "seams in tolerance");
+    plan_and_export(part, walk, cell, config.export_.even_if_out_of_tolerance ? "all seams" : "seams in tolerance");
 }
 
 /// Programs and reports of an earlier run; they must not stand beside a config that they don't follow from.
 void remove_products(const RunFolder& folder) {
-    for (const auto* file :
-         {"seam_points.csv", "groove.csv", "waypoints.csv", "seams.json", "report.json", "report.html"}) {
+    for (const auto* file : {"seam_points.csv", "groove.csv", "waypoints.csv", "passes.csv", "joints.csv", "seams.json",
+                             "report.json", "report.html"}) {
         folder.remove(file);
     }
     for (const auto robot : kRobotNames) {
@@ -88,6 +122,12 @@ void write_products(const PartResult& part, const Walk& walk) {
         }
     }
     walk.write("waypoints.csv", waypoints_csv(part.plan.waypoints, frame_of(part)));
+    if (!part.plan.passes.empty()) {
+        walk.write("passes.csv", passes_csv(part.plan.passes));
+    }
+    if (part.plan.arm && !part.plan.arm->samples.empty()) {
+        walk.write("joints.csv", joints_csv(*part.plan.arm));
+    }
     walk.write("seams.json", seams_json(part));
     std::set<std::string> robots;
     for (const auto& program : part.programs) {
@@ -148,7 +188,7 @@ PartResult run_nominal(const std::string& name, std::vector<SeamModel> models, c
     Walk walk(part, progress, &folder);
     remove_products(folder);
     walk.write("config.resolved.json", config_json(config));
-    plan_and_export(part, walk, encode(part.models));
+    plan_and_export(part, walk, cell_of(config), encode(part.models));
     walk.always(
         "report", [&] { write_products(part, walk); }, report_summary);
     return part;

@@ -58,4 +58,14 @@ StoredRun load_run(const fs::path& folder, const std::optional<fs::path>& scan_f
     return run;
 }
 
+std::vector<SeamModel> load_models(const fs::path& folder) {
+    const fs::path file = folder / "4-models.json";
+    if (!fs::is_regular_file(file)) {
+        throw InputError(
+            "run folder: " + folder.string() +
+            " has no 4-models.json; a folder in which \"seampath run\" fitted the seams of a scan was needed");
+    }
+    return load<std::vector<SeamModel>>(file, "fit");
+}
+
 }  // namespace seampath

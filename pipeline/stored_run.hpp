@@ -20,4 +20,8 @@ struct StoredRun {
 /// scan is another one.
 StoredRun load_run(const std::filesystem::path& folder, const std::optional<std::filesystem::path>& scan_file);
 
+/// The curves that an earlier run fitted, one a seam. Throws InputError when the folder is not one of a run that came
+/// so far, or the file is damaged.
+std::vector<SeamModel> load_models(const std::filesystem::path& folder);
+
 }  // namespace seampath

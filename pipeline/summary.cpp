@@ -90,8 +90,11 @@ std::string validate_summary(const PartResult& part) {
 }
 
 std::string plan_summary(const PartResult& part) {
-    return count(part.planned_seams.size(), "seam") + " -> " + count(part.plan.waypoints.size(), "waypoint") + ", " +
-           fixed(part.plan.duration_s, 1) + " s of travel; chord error " + mm(part.plan.max_chord_error_mm);
+    const Plan& plan = part.plan;
+    return count(part.planned_seams.size(), "seam") + " -> " +
+           (plan.passes.empty() ? "" : std::to_string(plan.passes.size()) + " passes, ") +
+           count(plan.waypoints.size(), "waypoint") + ", " + fixed(plan.duration_s, 1) + " s of travel; chord error " +
+           mm(plan.max_chord_error_mm) + (plan.arm ? "; " + plan.arm->verdict : "");
 }
 
 std::string export_summary(const PartResult& part) {
@@ -106,7 +109,11 @@ std::string report_summary(const PartResult& part) {
 }
 
 std::string_view verdict(const PartResult& part) {
-    return part.pass() ? "pass" : part.models.empty() ? "no seam found" : "out of tolerance";
+    const bool arm_fails = part.plan.arm && !part.plan.arm->pass;
+    return part.pass()           ? "pass"
+           : part.models.empty() ? "no seam found"
+           : arm_fails           ? "the arm can't make it"
+                                 : "out of tolerance";
 }
 
 std::string seam_table(const PartResult& part) {

@@ -153,6 +153,46 @@ std::string waypoints_csv(const std::vector<Waypoint>& waypoints, const std::str
     return text;
 }
 
+std::string passes_csv(const std::vector<PlannedPass>& passes) {
+    std::string text =
+        "# from the seam to the wire's aim, in the section square to travel, means along the seam: across towards "
+        "flank "
+        "1, up along the groove's middle; tilt of the torch's body towards flank 1\n"
+        "# unit: mm, mm2, deg\n"
+        "seam,pass,layer,bead,across_mm,up_mm,tilt_deg,area_mm2,least_area_mm2,most_area_mm2\n";
+    int pass = 0;
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+        const auto& [seam, layer, bead, across_mm, up_mm, tilt_rad, area_mm2, least_mm2, most_mm2] = passes[i];
+        pass = i > 0 && passes[i - 1].seam == seam ? pass + 1 : 0;
+        std::string line = std::to_string(seam) + "," + std::to_string(pass) + "," + std::to_string(layer) + "," +
+                           std::to_string(bead);
+        append(line, {across_mm, up_mm, tilt_rad * 180 / std::numbers::pi, area_mm2, least_mm2, most_mm2});
+        text += line + "\n";
+    }
+    return text;
+}
+
+std::string joints_csv(const ArmTravel& arm) {
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    std::string text =
+        "# arm: " + arm.arm +
+        "\n# unit: mm, s, deg; roll: of the torch about its wire; waypoint: row of waypoints.csv, from 0\n"
+        "# time: welds as planned, ways through the air as the axes make them\n"
+        "seam,kind,waypoint,station_mm,time_s,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg,roll_deg,"
+        "manipulability_m3\n";
+    for (const ArmSample& s : arm.samples) {
+        std::string line = std::to_string(s.seam) + "," + std::string(name(s.kind)) + "," +
+                           (s.waypoint >= 0 ? std::to_string(s.waypoint) : "");
+        append(line, {s.station_mm, s.time_s});
+        for (const double q : s.q) {
+            append(line, {q * kDegrees});
+        }
+        append(line, {s.roll * kDegrees, s.manipulability});
+        text += line + "\n";
+    }
+    return text;
+}
+
 std::string seams_json(const PartResult& part) {
     Json seams = Json::array();
     for (std::size_t i = 0; i < part.models.size(); ++i) {

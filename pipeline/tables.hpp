@@ -21,6 +21,14 @@ std::string frame_of(const PartResult& part);
 /// Torch poses: comment lines with frame, unit and quaternion order, then seam,index,kind,station_mm,x,...,sigma_mm.
 std::string waypoints_csv(const std::vector<Waypoint>& waypoints, const std::string& frame);
 
+/// Passes in the order of travel: comment lines, then seam,pass,layer,bead,across_mm,up_mm,tilt_deg,area_mm2,
+/// least_area_mm2,most_area_mm2.
+std::string passes_csv(const std::vector<PlannedPass>& passes);
+
+/// The axes of the arm: comment lines, then seam,kind,waypoint,station_mm,time_s,j1_deg,...,j6_deg,roll_deg,
+/// manipulability_m3. The waypoint is its row of waypoints.csv from 0, empty between two of them.
+std::string joints_csv(const ArmTravel& arm);
+
 /// Per seam: joint kind, closed or open, length, model; where there is a scan, also confidence, points, nodes and
 /// deviation.
 std::string seams_json(const PartResult& part);

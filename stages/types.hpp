@@ -212,6 +212,50 @@ struct Waypoint {
     double sigma_mm = 0;
 };
 
+/// One of several passes that fill the groove of one seam. Offsets are from the seam to the wire's aim, in the section
+/// square to travel: across, towards flank 1, and up, out of the joint along the groove's middle; means along the seam.
+struct PlannedPass {
+    int seam = 0;
+    int layer = 0;  ///< from 0, at the root
+    int bead = 0;   ///< from 0, in the order of welding in its layer
+    double across_mm = 0;
+    double up_mm = 0;
+    double tilt_rad = 0;   ///< of the torch's body from the groove's middle, towards flank 1
+    double area_mm2 = 0;   ///< of the section that the pass fills, mean along the seam
+    double least_mm2 = 0;  ///< of that section, where the groove is narrowest
+    double most_mm2 = 0;
+};
+
+/// Where a robot arm stands at one moment of a travel.
+struct ArmSample {
+    int seam = 0;
+    WaypointKind kind = WaypointKind::weld;  ///< of the move's end
+    int waypoint = -1;                       ///< index into Plan::waypoints, or -1 between two of them
+    double station_mm = 0;
+    double time_s = 0;
+    std::array<double, 6> q{};  ///< rad
+    double roll = 0;            ///< turn of the torch about its wire from +X along travel, rad
+    double manipulability = 0;  ///< |det J| (Yoshikawa 1985), lengths in m
+};
+
+/// How a robot arm makes a travel, or why it can't.
+struct ArmTravel {
+    std::string arm;
+    bool pass = false;
+    std::string verdict;                         ///< one sentence with the numbers behind `pass`
+    std::array<double, 6> lowest{}, highest{};   ///< of the axes, rad
+    std::array<double, 6> max_speed{};           ///< of the axes, rad/s
+    std::array<double, 6> max_acceleration{};    ///< of the axes, rad/s^2
+    std::array<double, 6> speed_share{};         ///< largest speed of each axis over its limit
+    std::array<double, 6> acceleration_share{};  ///< the same of accelerations
+    double least_margin = 0;                     ///< smallest distance of an axis from its limits, rad
+    double least_manipulability = 0;
+    double max_roll = 0;  ///< largest turn about the wire that it took, rad
+    double duration_s = 0;
+    std::vector<ArmSample> samples;           ///< in the order of travel; empty when it can't reach all
+    std::optional<Eigen::Vector3d> shift_mm;  ///< in the base: a move of the part after which it can
+};
+
 /// How the torch travels all seams, and how good the travel is.
 struct Plan {
     std::vector<Waypoint> waypoints;  ///< in the order of travel
@@ -219,6 +263,8 @@ struct Plan {
     double max_speed_error = 0;       ///< relative, of straight moves between weld waypoints against plan.speed_mm_s
     double max_turn_deg = 0;          ///< largest rotation between neighbouring weld waypoints
     double duration_s = 0;
+    std::vector<PlannedPass> passes;  ///< in the order of travel; empty where every seam is one pass
+    std::optional<ArmTravel> arm;     ///< where an arm is given
 };
 
 }  // namespace seampath

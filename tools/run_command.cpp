@@ -100,9 +100,14 @@ void print_result(const Part& part, const PartResult& result) {
     } else {
         std::cout << seam_table(result);
     }
+    if (result.plan.arm) {
+        std::cout << "arm       " << result.plan.arm->verdict << "\n";
+    }
     std::cout << "report    " << (part.folder / "report.html").string() << "\n";
     std::cout << "programs  "
-              << (result.programs.empty() ? "none: no seam may be welded" : (part.folder / "programs").string())
+              << (result.programs.empty()
+                      ? (result.planned_seams.empty() ? "none: no seam may be welded" : "none: the arm can't make it")
+                      : (part.folder / "programs").string())
               << "\n";
 }
 

@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -14,8 +11,12 @@
 #include "stages/error.hpp"
 #include "stages/nominal/nominal.hpp"
 #include "stages/text.hpp"
+#include "tools/choice.hpp"
 #include "tools/commands.hpp"
 #include "tools/progress_line.hpp"
+#include "tools/saddle_facts.hpp"
+#include "tools/saddle_from.hpp"
+#include "tools/saddle_points.hpp"
 #include "tools/stop_signal.hpp"
 
 namespace seampath {
@@ -29,35 +30,23 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr const char* kPointsFile = "saddle_points.csv";
 constexpr const char* kFactsFile = "saddle.json";
 
-/// Places at which the range of opening and curvature is looked for: every 0.05 deg.
-constexpr int kLooks = 7200;
-
 struct Arguments {
     std::string header = "cylinder";
-    double branch_radius_mm = 0;
-    std::optional<double> header_radius_mm, head_depth_mm, cone_half_angle_deg;
+    std::optional<double> branch_radius_mm, header_radius_mm, head_depth_mm, cone_half_angle_deg;
     double angle_deg = 90;
     double offset_mm = 0;
-    std::string step = "arc-length";
-    int steps = 40;
-    std::string pose = "bisector";
-    double pose_angle_deg = 45;
-    std::optional<double> speed_mm_s, period_s;
+    std::string from;
+    std::optional<int> seam;
+    SaddleStepOptions steps;
+    std::optional<double> speed_mm_s;
+    std::string groove;
+    std::optional<double> groove_depth_mm, bead_area_mm2;
     std::string out;
     std::optional<fs::path> config;
     std::string robot;
     std::vector<std::string> set;
     bool json = false;
 };
-
-template <class Enum, std::size_t n>
-Enum chosen(const std::string& option, const std::string& word, const std::array<std::string_view, n>& names) {
-    const auto found = std::find(names.begin(), names.end(), word);
-    if (found == names.end()) {
-        throw InputError(option + ": \"" + word + "\" is not known; there are " + join(names) + hint(word, names));
-    }
-    return static_cast<Enum>(found - names.begin());
-}
 
 /// The size that a kind of header needs, or refused where it has no such size.
 double size_for(const std::string& option, const std::optional<double>& value, const std::string& header, bool needed) {
@@ -68,10 +57,13 @@ double size_for(const std::string& option, const std::optional<double>& value, c
     return value.value_or(0);
 }
 
-SaddleDimensions dimensions_of(const Arguments& given) {
+SaddleDimensions given_dimensions(const Arguments& given) {
     SaddleDimensions d;
-    d.header = chosen<HeaderKind>("--header", given.header, kHeaderNames);
-    d.branch_radius_mm = given.branch_radius_mm;
+    d.header = static_cast<HeaderKind>(choice("--header", given.header, kHeaderNames));
+    if (!given.branch_radius_mm) {
+        throw InputError("--branch-radius-mm: a saddle needs it; give it a value, or a run to take it --from");
+    }
+    d.branch_radius_mm = *given.branch_radius_mm;
     d.header_radius_mm =
         size_for("--header-radius-mm", given.header_radius_mm, given.header, d.header != HeaderKind::plane);
     d.head_depth_mm = size_for("--head-depth-mm", given.head_depth_mm, given.header, d.header == HeaderKind::ellipsoid);
@@ -90,178 +82,118 @@ Config config_of(const Arguments& given) {
     if (!given.robot.empty()) {
         overrides.push_back({"--robot", "export.robots", given.robot});
     }
-    if (given.speed_mm_s) {
-        overrides.push_back({"--speed-mm-s", "plan.speed_mm_s", shortest(*given.speed_mm_s)});
+    const auto add = [&overrides](const char* option, const char* path, const std::optional<double>& value) {
+        if (value) {
+            overrides.push_back({option, path, shortest(*value)});
+        }
+    };
+    add("--speed-mm-s", "plan.speed_mm_s", given.speed_mm_s);
+    add("--groove-depth-mm", "plan.groove_depth_mm", given.groove_depth_mm);
+    add("--bead-area-mm2", "plan.bead_area_mm2", given.bead_area_mm2);
+    if (!given.groove.empty()) {
+        overrides.push_back({"--groove", "plan.groove", given.groove});
     }
     return read_config(given.config, overrides);
 }
 
-/// The interpolation points of one saddle.
-struct Interpolation {
-    StepLaw law = StepLaw::arc_length;
-    PoseLaw pose = PoseLaw::bisector;
-    double initial = 0;  ///< the paper's phi, rad
-    double step_mm = 0;
-    double speed_mm_s = 0;
-    std::vector<double> angles;
-};
-
-Interpolation interpolate(const SaddleCurve& curve, const Arguments& given, double speed_mm_s) {
-    Interpolation i;
-    i.law = chosen<StepLaw>("--step", given.step, kStepLawNames);
-    i.pose = chosen<PoseLaw>("--pose", given.pose, kPoseLawNames);
-    i.initial = given.pose_angle_deg * kDegree;
-    i.speed_mm_s = speed_mm_s;
-    if (given.period_s && !(*given.period_s > 0 && std::isfinite(*given.period_s))) {
-        throw InputError("--period-s: " + shortest(*given.period_s) + " is no period; a time above 0 is needed");
+/// The dimensions that the header has, and no others. Degrees as they were given, where they were.
+Json dimensions_json(const Arguments& given, const SaddleDimensions& d) {
+    const bool fitted = !given.branch_radius_mm;
+    Json json{{"header", kHeaderNames.at(static_cast<std::size_t>(d.header))},
+              {"branch_radius_mm", d.branch_radius_mm}};
+    if (d.header != HeaderKind::plane) {
+        json["header_radius_mm"] = d.header_radius_mm;
     }
-    if (given.steps < 1) {
-        throw InputError("--steps: " + std::to_string(given.steps) + " is too few; at least 1 is needed");
+    if (given.head_depth_mm) {
+        json["head_depth_mm"] = *given.head_depth_mm;
     }
-    i.step_mm = given.period_s ? speed_mm_s * *given.period_s : curve.length() / given.steps;
-    constexpr double kMostSteps = 1e7;
-    if (curve.length() / i.step_mm > kMostSteps) {
-        throw InputError("--period-s: steps of " + shortest(i.step_mm) +
-                         " mm are more than 10 million round this seam; a longer period is needed");
+    if (given.cone_half_angle_deg) {
+        json["cone_half_angle_deg"] = *given.cone_half_angle_deg;
     }
-    i.angles = step_angles(curve, i.law, i.step_mm);
-    return i;
-}
-
-std::string points_csv(const SaddleCurve& curve, const Interpolation& i) {
-    std::string text =
-        "# frame: nominal (right-handed)\n"
-        "# unit: mm, s, deg; theta: branch angle; torch: its angle from the branch's wall, square to travel\n"
-        "index,theta_deg,station_mm,time_s,x,y,z,torch_deg,opening_deg,curvature_per_mm,tx,ty,tz,n1x,n1y,n1z,n2x,n2y,"
-        "n2z\n";
-    double time_s = 0, before_mm = 0;
-    for (std::size_t k = 0; k < i.angles.size(); ++k) {
-        const SaddlePoint s = curve.at(i.angles[k]);
-        const double station_mm = curve.station(i.angles[k]);
-        // Every step takes one period, but for what is left over at the end.
-        const bool last = k + 1 == i.angles.size();
-        time_s =
-            last ? time_s + (station_mm - before_mm) / i.speed_mm_s : static_cast<double>(k) * i.step_mm / i.speed_mm_s;
-        before_mm = station_mm;
-        text += std::to_string(k);
-        for (const double value :
-             {s.theta / kDegree, station_mm, time_s, s.p.x(), s.p.y(), s.p.z(),
-              torch_angle(s, i.pose, i.initial) / kDegree, s.opening / kDegree, s.curvature_per_mm, s.tangent.x(),
-              s.tangent.y(), s.tangent.z(), s.n1.x(), s.n1.y(), s.n1.z(), s.n2.x(), s.n2.y(), s.n2.z()}) {
-            text += ',' + shortest(value);
-        }
-        text += '\n';
+    json["angle_deg"] = fitted ? d.angle / kDegree : given.angle_deg;
+    json["offset_mm"] = d.offset_mm;
+    if (fitted) {
+        json["from"] = given.from;
     }
-    return text;
-}
-
-struct Range {
-    double low = 0, high = 0;
-};
-
-template <class Number>
-Range range(const SaddleCurve& curve, const Number& number) {
-    Range r{number(curve.at(0)), number(curve.at(0))};
-    for (int k = 1; k < kLooks; ++k) {
-        const double value = number(curve.at(2 * std::numbers::pi * k / kLooks));
-        r = {std::min(r.low, value), std::max(r.high, value)};
-    }
-    return r;
-}
-
-/// The dimensions that were given, and no others.
-Json dimensions_json(const Arguments& given) {
-    Json json{{"header", given.header}, {"branch_radius_mm", given.branch_radius_mm}};
-    const auto add = [&json](const char* key, const std::optional<double>& value) {
-        if (value) {
-            json[key] = *value;
-        }
-    };
-    add("header_radius_mm", given.header_radius_mm);
-    add("head_depth_mm", given.head_depth_mm);
-    add("cone_half_angle_deg", given.cone_half_angle_deg);
-    add("angle_deg", given.angle_deg);
-    add("offset_mm", given.offset_mm);
     return json;
 }
 
-/// What is known of the saddle, its steps and its model.
-Json facts_of(const Arguments& given, const SaddleCurve& curve, const Interpolation& i, const PartResult& part) {
-    const Range opening = range(curve, [](const SaddlePoint& s) { return s.opening / kDegree; });
-    const Range bend = range(curve, [](const SaddlePoint& s) { return s.curvature_per_mm; });
-    const StepErrors errors = step_errors(curve, i.angles, i.step_mm);
-    return {{"dimensions", dimensions_json(given)},
-            {"length_mm", curve.length()},
-            {"opening_least_deg", opening.low},
-            {"opening_most_deg", opening.high},
-            {"curvature_least_per_mm", bend.low},
-            {"curvature_most_per_mm", bend.high},
-            {"step", kStepLawNames.at(static_cast<std::size_t>(i.law))},
-            {"step_mm", i.step_mm},
-            {"steps", i.angles.size() - 1},
-            {"period_s", i.step_mm / i.speed_mm_s},
-            {"speed_error_arc_percent", 100 * errors.arc},
-            {"speed_error_chord_percent", 100 * errors.chord},
-            {"pose", kPoseLawNames.at(static_cast<std::size_t>(i.pose))},
-            {"curve_control_points", part.models.front().curve.control.size()},
-            {"curve_error_mm", part.models.front().residual_max_mm},
-            {"waypoints", part.plan.waypoints.size()},
-            {"duration_s", part.plan.duration_s},
-            {"programs", part.programs.size()}};
+/// Options that belong to another use of the command.
+void check_use(const CLI::App& app, const Arguments& given) {
+    const auto refuse = [&app](const char* option, const std::string& why) {
+        if (app.count(option) > 0) {
+            throw InputError(std::string(option) + ": " + why + "; leave it out");
+        }
+    };
+    if (given.from.empty()) {
+        refuse("--seam", "is for the run that --from names");
+    } else if (given.branch_radius_mm) {
+        for (const char* option :
+             {"--step", "--steps", "--pose", "--pose-angle-deg", "--speed-mm-s", "--period-s", "--groove",
+              "--groove-depth-mm", "--bead-area-mm2", "--robot", "--config", "--set"}) {
+            refuse(option, "is for a torch path, and a comparison --from a run with a nominal saddle makes none");
+        }
+    } else {
+        for (const char* option : {"--header", "--header-radius-mm", "--head-depth-mm", "--cone-half-angle-deg",
+                                   "--angle-deg", "--offset-mm"}) {
+            refuse(option, "the dimensions are those of the run; --branch-radius-mm is missing if they are nominal");
+        }
+    }
 }
 
-/// "0.11", "6.22e-13"
-std::string three_digits(double value) {
-    std::array<char, 40> buffer;
-    return {buffer.data(),
-            std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 3).ptr};
+/// So that none of them stands beside what it does not follow from.
+void remove_earlier_results(const fs::path& out) {
+    if (fs::is_directory(out)) {
+        for (const auto* file :
+             {kPointsFile, kFactsFile, "saddle_difference.csv", "saddle_difference.svg", "saddle_difference.json"}) {
+            RunFolder(out).remove(file);
+        }
+    }
 }
 
-void print(const Json& facts, const fs::path& out) {
-    const auto number = [&](const char* key, int decimals) { return fixed(facts.at(key).get<double>(), decimals); };
-    const auto brief = [&](const char* key) { return three_digits(facts.at(key).get<double>()); };
-    std::cout << aligned(std::vector<std::vector<std::string>>{
-        {"length", number("length_mm", 4) + " mm"},
-        {"opening", number("opening_least_deg", 2) + " to " + number("opening_most_deg", 2) + " deg"},
-        {"curvature", number("curvature_least_per_mm", 6) + " to " + number("curvature_most_per_mm", 6) + " per mm"},
-        {"steps", facts.at("steps").dump() + ", " + facts.at("step").get<std::string>() + ", " + number("step_mm", 4) +
-                      " mm, " + number("period_s", 4) + " s each"},
-        {"speed error", brief("speed_error_arc_percent") + " % along the curve, " + brief("speed_error_chord_percent") +
-                            " % in straight moves"},
-        {"curve", facts.at("curve_control_points").dump() + " control points, within " + brief("curve_error_mm") +
-                      " mm of the exact seam"},
-        {"torch path", facts.at("waypoints").dump() + " waypoints, " + number("duration_s", 1) + " s"},
-        {"points", (out / kPointsFile).string()},
-        {"report", (out / "report.html").string()},
-        {"programs", (out / "programs").string()}});
+/// The paper's law turns the flanks that a groove lies between.
+void check_torch(const SaddleSteps& points, const Config& config) {
+    if (points.pose == PoseLaw::paper && config.plan.groove != GrooveForm::none) {
+        throw InputError(
+            "--pose: the paper's law knows one pass, and plan.groove asks for several; set --pose to bisector");
+    }
 }
 
 int saddle(const Arguments& given) {
     watch_stop_signals();
-    const Config config = config_of(given);
-    const SaddleCurve curve = saddle_of(dimensions_of(given));
-    const Interpolation points = interpolate(curve, given, config.plan.speed_mm_s);
-    for (const auto* earlier : {kPointsFile, kFactsFile}) {
-        RunFolder(given.out).remove(earlier);
+    remove_earlier_results(given.out);
+    const SaddleFrom from{given.from, given.seam, given.out, given.json};
+    if (!given.from.empty() && given.branch_radius_mm) {
+        return compare_with_nominal(from, given_dimensions(given));
     }
+    const Config config = config_of(given);
+    const SaddleDimensions dimensions = given.from.empty() ? given_dimensions(given) : fitted_dimensions(from);
+    const SaddleCurve curve = saddle_of(dimensions);
+    const SaddleSteps points = saddle_steps(curve, given.steps, config.plan.speed_mm_s);
+    check_torch(points, config);
     ProgressLine line("");
     const PartResult part =
         run_nominal("saddle", {nominal_model(curve, points.pose, points.initial)}, given.out, config, line.progress());
-    const Json facts = facts_of(given, curve, points, part);
+    const Json facts = saddle_facts(dimensions_json(given, dimensions), curve, points, part);
     const std::string text = facts.dump(4) + "\n";
     const RunFolder folder(given.out);
-    folder.write(kPointsFile, points_csv(curve, points));
+    folder.write(kPointsFile, saddle_points_csv(curve, points));
     folder.write(kFactsFile, text);
     if (given.json) {
         std::cout << text;
     } else {
-        print(facts, given.out);
+        const fs::path out = given.out;
+        std::cout << saddle_facts_text(
+            facts, part,
+            {{"points", (out / kPointsFile).string()},
+             {"report", (out / "report.html").string()},
+             {"programs", part.programs.empty() ? "none: the arm can't make it" : (out / "programs").string()}});
     }
-    return kPass;
+    return part.pass() ? kPass : kOutOfTolerance;
 }
 
 void add_dimensions(CLI::App& app, Arguments& given) {
-    app.add_option("--branch-radius-mm", given.branch_radius_mm, "outer radius of the branch, mm")->required();
+    app.add_option("--branch-radius-mm", given.branch_radius_mm, "outer radius of the branch, mm");
     app.add_option("--header-radius-mm", given.header_radius_mm,
                    "outer radius of the header, mm; of a cone where the branch's axis crosses its axis");
     app.add_option("--header", given.header, "shape of the header: " + join(kHeaderNames))->capture_default_str();
@@ -280,32 +212,45 @@ Command saddle_command(CLI::App& program) {
         "saddle", "the seam of a round branch on a header, from nominal dimensions instead of a scan (Xue et al.)");
     const auto given = std::make_shared<Arguments>();
     add_dimensions(*app, *given);
-    app->add_option("--step", given->step, "law of the interpolation steps: " + join(kStepLawNames))
+    app->add_option("--step", given->steps.step, "law of the interpolation steps: " + join(kStepLawNames))
         ->capture_default_str();
-    app->add_option("--steps", given->steps, "interpolation steps once round, where no period is given")
+    app->add_option("--steps", given->steps.steps, "interpolation steps once round, where no period is given")
         ->capture_default_str();
-    app->add_option("--pose", given->pose,
+    app->add_option("--pose", given->steps.pose,
                     "law of the torch angle: the paper's (12), or the bisector of both walls; " + join(kPoseLawNames))
         ->capture_default_str();
-    app->add_option("--pose-angle-deg", given->pose_angle_deg, "torch angle that the paper's law begins with")
+    app->add_option("--pose-angle-deg", given->steps.pose_angle_deg, "torch angle that the paper's law begins with")
         ->capture_default_str();
     app->add_option("--speed-mm-s", given->speed_mm_s, "travel speed; the same as --set plan.speed_mm_s=SPEED");
-    app->add_option("--period-s", given->period_s, "interpolation period; a step is speed times period");
+    app->add_option("--period-s", given->steps.period_s, "interpolation period; a step is speed times period");
+    app->add_option(
+        "--groove", given->groove,
+        "weld in the passes that fill this groove; the same as --set plan.groove=FORM; " + join(kGrooveFormNames));
+    app->add_option("--groove-depth-mm", given->groove_depth_mm, "the same as --set plan.groove_depth_mm=DEPTH");
+    app->add_option("--bead-area-mm2", given->bead_area_mm2, "the same as --set plan.bead_area_mm2=AREA");
     app->add_option("--robot", given->robot, "robots; the same as --set export.robots=NAMES");
     app->add_option("--config", given->config, "config file, JSON with comments; plan and export count");
     app->add_option("--set", given->set, "stage.key=value, over the config file")->allow_extra_args(false);
+    app->add_option("--from", given->from,
+                    "folder of a run that fitted a saddle: with nominal dimensions, compares; without, takes its "
+                    "dimensions");
+    app->add_option("--seam", given->seam, "which seam of that run; without: every saddle in it");
     app->add_option("--out", given->out, "folder for the results")->required();
     app->add_flag("--json", given->json, "for machines");
     app->footer(
         "Examples:\n"
-        "  seampath saddle --header-radius-mm 600 --branch-radius-mm 150 --out out/saddle\n"
         "  seampath saddle --header-radius-mm 600 --branch-radius-mm 150 --angle-deg 60 --offset-mm 80 "
         "--speed-mm-s 8 --period-s 0.1 --robot abb --out out/leaning\n"
-        "  seampath saddle --header plane --branch-radius-mm 40 --angle-deg 50 --pose paper --out out/plate\n"
+        "  seampath saddle --header-radius-mm 600 --branch-radius-mm 150 --groove fillet --groove-depth-mm 8 "
+        "--bead-area-mm2 20 --out out/passes\n"
+        "  seampath saddle --from out/part --header-radius-mm 60 --branch-radius-mm 30 --out out/as-built\n"
         "Frame: z up, the header's axis along y; branch angle 0 is where the branch faces +y, and it runs towards +x. "
         "saddle_points.csv holds the interpolation points; waypoints and programs hold the chord tolerance and the "
-        "constant speed of plan.*\n");
-    return {app, [given] { return saddle(*given); }};
+        "constant speed of plan.*. --from compares in this frame: fitted - nominal at equal branch angles.\n");
+    return {app, [given, app] {
+                check_use(*app, *given);
+                return saddle(*given);
+            }};
 }
 
 }  // namespace seampath

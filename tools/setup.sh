@@ -5,7 +5,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 build_packages=(g++ cmake ninja-build ccache libeigen3-dev nlohmann-json3-dev libcli11-dev zlib1g-dev liblzf-dev
     libssl-dev libjs-three)
-test_packages=(libgtest-dev libgmock-dev chromium)
+test_packages=(libgtest-dev libgmock-dev liborocos-kdl-dev chromium)
 check_packages=(clang clang-format clang-tidy)
 
 say() { printf '%s\n' "$*" >&2; }

@@ -153,7 +153,7 @@ Fields describe(FitOptions& o) {
         {"axis", choice(o.axis, kFitAxisNames), "what the nodes' x, y and z are interpolated over"},
         {"parametrization", choice(o.parametrization, kFitParametrizationNames),
          "how the parametric model spaces its parameter"},
-        {"degree", &o.degree, "highest degree of newton-forward, newton-backward, bessel and lagrange", within(1, 5)},
+        {"degree", &o.degree, "highest degree of newton-*, stirling, bessel and lagrange", within(1, 5)},
         {"branch_radius_mm", &o.branch_radius_mm,
          "known radius of a saddle's branch, [value, 1 sigma]; [0, 0]: unknown", at_least(0), 2},
         {"header_radius_mm", &o.header_radius_mm, "known radius of its header, [value, 1 sigma]", at_least(0), 2},

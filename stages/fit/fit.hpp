@@ -8,8 +8,7 @@ namespace seampath {
 
 /// What the curve is: the saddle where a round pipe meets another surface, a smoothing spline through all points
 /// (`automatic` takes one of both), or one of the lines that Minejeva & Markovics, Choice of
-/// interpolation method for an arbitrary arc welding curve, compare, through the nodes. Their Stirling formula is not
-/// among them: its line jumps midway between nodes; Newton's divided differences give Lagrange's line.
+/// interpolation method for an arbitrary arc welding curve, compare, through the nodes.
 enum class FitModel {
     automatic,
     saddle,
@@ -24,12 +23,15 @@ enum class FitModel {
     parametric,
     newton_forward,
     newton_backward,
+    stirling,
     bessel,
-    lagrange
+    lagrange,
+    newton_divided
 };
-inline constexpr std::array<std::string_view, 15> kFitModelNames{
-    "auto",  "saddle", "spline",     "natural",        "clamped",         "not-a-knot", "periodic", "akima",
-    "pchip", "linear", "parametric", "newton-forward", "newton-backward", "bessel",     "lagrange"};
+inline constexpr std::array<std::string_view, 17> kFitModelNames{
+    "auto",   "saddle",   "spline",        "natural",    "clamped",        "not-a-knot",      "periodic",
+    "akima",  "pchip",    "linear",        "parametric", "newton-forward", "newton-backward", "stirling",
+    "bessel", "lagrange", "newton-divided"};
 inline std::string_view name(FitModel model) {
     return kFitModelNames[static_cast<std::size_t>(model)];
 }
@@ -77,10 +79,13 @@ bool sets_nodes(FitModel model);
 ///
 /// All others pass the nodes, each coordinate interpolated over arc length along the seam's points or along an axis;
 /// `parametric` is the natural spline, of a closed seam the periodic one, over Marin's parameters (parametrize.hpp).
-/// Newton I, Newton II and Bessel need equal steps: nodes at equal arc lengths (or equal steps of the axis) are read
-/// off Akima's line through all seam points. Lagrange's degree is odd, for one of even degree jumps. Closed seams are
-/// interpolated round and round, from their first node. Cubics become the B-spline exactly, with double and triple
-/// knots where they share one derivative or none; higher degrees are followed to within 1e-6 mm.
+/// Newton I, Newton II, Stirling and Bessel need equal steps: nodes at equal arc lengths (or equal steps of the axis)
+/// are read off Akima's line through all seam points. Stirling's formula (12) about the nearest node jumps midway
+/// between two nodes; here the formulas about both count, each the more the nearer its node is, 1 - |U|: the line keeps
+/// their values and slopes at the nodes, and of degree 2 is Overhauser's. Its degree is even, Lagrange's is odd, for
+/// one of even degree jumps; `newton_divided` is the same polynomial as `lagrange`. Closed seams are interpolated round
+/// and round, from their first node. Cubics become the B-spline exactly, with double and triple knots where they share
+/// one derivative or none; higher degrees are followed to within 1e-6 mm.
 ///
 /// Throws InputError for fewer than 6 points, a seam without length, neighbouring nodes in one place, and a model that
 /// can't serve the seam: `periodic` on an open one, `natural`, `clamped`, `not-a-knot` on a closed one, an axis along

@@ -50,10 +50,14 @@ Traits traits(FitModel model) {
             return {Method::newton_forward, kPositionOnly, false, true};
         case FitModel::newton_backward:
             return {Method::newton_backward, kPositionOnly, false, true};
+        case FitModel::stirling:
+            return {Method::stirling, kPositionOnly, false, true};
         case FitModel::bessel:
             return {Method::bessel, kPositionOnly, false, true};
         case FitModel::lagrange:
             return {Method::lagrange, kPositionOnly, false, false};
+        case FitModel::newton_divided:
+            return {Method::newton_divided, kPositionOnly, false, false};
         case FitModel::automatic:
         case FitModel::saddle:
         case FitModel::spline:
@@ -106,6 +110,36 @@ CubicPieces cubic_pieces(const Lines& lines, std::size_t first, std::size_t coun
     return pieces;
 }
 
+/// Stirling's formulas about the nodes on both sides of x, each with the weight 1 - |U|. Both pass both nodes, so the
+/// line has the value and slope of a node's own formula there.
+double stirling_value(const DifferenceTable& table, std::size_t degree, double x) {
+    const std::size_t i = table.interval(x);
+    const auto about = [&](std::size_t node) {
+        Placement at = place(table, Formula::stirling, table.x(node), degree);
+        at.u = (x - table.x(at.origin)) / table.step();
+        return value(table, at);
+    };
+    const double share = (x - table.x(i)) / table.step();
+    return (1 - share) * about(i) + share * about(i + 1);
+}
+
+Lines stirling_lines(const NodeTable& nodes, std::size_t degree) {
+    Lines lines;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+        Values y;
+        for (const Vector3d& p : nodes.p) {
+            y.push_back(p[c]);
+        }
+        Interpolant& line = lines[static_cast<std::size_t>(c)];
+        line.method = Method::stirling;
+        line.t = nodes.t;
+        line.at = [table = DifferenceTable(nodes.t, y, degree), degree](double t) {
+            return Eigen::Vector2d(t, stirling_value(table, degree, t));
+        };
+    }
+    return lines;
+}
+
 /// A polynomial of degree 5 at most, in the powers of its place in the interval, 0 to 1.
 using Quintic = std::array<Vector3d, 6>;
 
@@ -134,7 +168,7 @@ Vector3d slope(const Quintic& a, double x) {
 
 /// Hermite's cubics over the polynomial between every two nodes: off by no more than |f''''| h^4 / 384, where f'''' is
 /// linear.
-CubicPieces hermite_pieces(const Lines& lines, std::size_t first, std::size_t count) {
+CubicPieces hermite_pieces(const Lines& lines, std::size_t first, std::size_t count, Joint joint) {
     CubicPieces pieces;
     for (std::size_t i = first; i < first + count; ++i) {
         const double from = lines[0].t[i], h = lines[0].t[i + 1] - from;
@@ -147,7 +181,7 @@ CubicPieces hermite_pieces(const Lines& lines, std::size_t first, std::size_t co
             pieces.breaks.push_back(from + x0 * h);
             pieces.coefficients.push_back(
                 {value(f, x0), b, (3 * chord - 2 * b - end) / w, (b + end - 2 * chord) / (w * w)});
-            pieces.joints.push_back(k == 0 ? kPositionOnly : kOneDerivative);
+            pieces.joints.push_back(k == 0 ? joint : kOneDerivative);
         }
     }
     pieces.breaks.push_back(lines[0].t[first + count]);
@@ -158,7 +192,8 @@ CubicPieces pieces_of(const NodeTable& table, bool closed, const FitOptions& o) 
     Traits use = traits(o.model);
     InterpolateOptions options;
     options.degree = static_cast<std::size_t>(o.degree);
-    if (o.model == FitModel::lagrange && o.degree % 2 == 0) {
+    const bool by_nodes = o.model == FitModel::lagrange || o.model == FitModel::newton_divided;
+    if (by_nodes && o.degree % 2 == 0) {
         --options.degree;
     }
     if (closed && o.model == FitModel::parametric) {
@@ -166,10 +201,16 @@ CubicPieces pieces_of(const NodeTable& table, bool closed, const FitOptions& o) 
     }
     const bool whole = use.method == Method::periodic;  // sees all of the ring; the others see a few nodes
     const std::ptrdiff_t before = closed && !whole ? kBeyond : 0;
-    const Lines lines = interpolated(closed ? carried_on(table, before, before + 1) : table, use.method, options);
+    const NodeTable seen = closed ? carried_on(table, before, before + 1) : table;
+    const bool blends = o.model == FitModel::stirling && o.degree >= 2 && seen.t.size() >= 3;
+    if (blends) {
+        use.joint = kOneDerivative;
+    }
+    const Lines lines = blends ? stirling_lines(seen, options.degree) : interpolated(seen, use.method, options);
     const auto first = static_cast<std::size_t>(before);
     const std::size_t count = table.t.size() - (closed ? 0 : 1);
-    return lines[0].cubic ? cubic_pieces(lines, first, count, use.joint) : hermite_pieces(lines, first, count);
+    return lines[0].cubic ? cubic_pieces(lines, first, count, use.joint)
+                          : hermite_pieces(lines, first, count, use.joint);
 }
 
 /// Parameters of the points nearest to the points, found from where they lie between the nodes. The ends of an open

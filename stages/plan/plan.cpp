@@ -9,7 +9,10 @@
 #include "stages/error.hpp"
 #include "stages/geometry/pose.hpp"
 #include "stages/plan/air.hpp"
+#include "stages/plan/arm_travel.hpp"
+#include "stages/plan/passes.hpp"
 #include "stages/plan/stations.hpp"
+#include "stages/plan/text.hpp"
 #include "stages/plan/torch.hpp"
 
 namespace seampath {
@@ -82,6 +85,60 @@ void number_and_time(std::vector<Waypoint>& waypoints) {
     }
 }
 
+// One weld, or one a pass.
+void add_welds(const SeamModel& model, int seam, const PlanOptions& options, std::vector<std::vector<Waypoint>>& welds,
+               Plan& result) {
+    const auto add = [&](const SeamModel& m) {
+        const TorchPath path(m, seam, options);
+        const WeldPoses weld = weld_poses(path, options);
+        welds.push_back(weld_waypoints(path, weld.poses, options));
+        result.max_chord_error_mm = std::max(result.max_chord_error_mm, weld.max_chord_error_mm);
+        measure(result, welds.back());
+    };
+    if (options.groove == GrooveForm::none) {
+        add(model);
+        return;
+    }
+    for (const Pass& pass : passes_of(model, seam, options)) {
+        add(pass.model);
+        result.passes.push_back(pass.facts);
+    }
+}
+
+// All welds with the ways between them.
+void join(const std::vector<std::vector<Waypoint>>& welds, const PlanOptions& options, Plan& result) {
+    for (const auto& weld : welds) {
+        const Waypoint approach =
+            backed_off(weld.front(), WaypointKind::approach, options.approach_mm, options.air_speed_mm_s);
+        if (!result.waypoints.empty()) {
+            const double clearance = std::min(options.approach_mm, options.retract_mm);
+            if (auto air = air_point(result.waypoints.back(), approach, welds, clearance)) {
+                result.waypoints.push_back(std::move(*air));
+            }
+        }
+        result.waypoints.push_back(approach);
+        result.waypoints.insert(result.waypoints.end(), weld.begin(), weld.end());
+        result.waypoints.push_back(
+            backed_off(weld.back(), WaypointKind::retract, options.retract_mm, options.air_speed_mm_s));
+    }
+    if (!result.waypoints.empty()) {
+        number_and_time(result.waypoints);
+        result.duration_s = result.waypoints.back().time_s;
+    }
+}
+
+// After the torch was turned about its wire.
+void measure_again(Plan& plan) {
+    number_and_time(plan.waypoints);
+    plan.max_turn_deg = 0;
+    for (std::size_t k = 1; k < plan.waypoints.size(); ++k) {
+        const Waypoint &from = plan.waypoints[k - 1], &to = plan.waypoints[k];
+        if (to.kind == WaypointKind::weld || to.kind == WaypointKind::weld_end) {
+            plan.max_turn_deg = std::max(plan.max_turn_deg, rotation_angle(from.q, to.q) * 180 / std::numbers::pi);
+        }
+    }
+}
+
 }  // namespace
 
 Fields describe(PlanOptions& o) {
@@ -102,39 +159,63 @@ Fields describe(PlanOptions& o) {
         {"travel_angle_deg", &o.travel_angle_deg,
          "turn of the torch about the cross direction, deg; above 0 it points ahead (push), below 0 back (drag)",
          within(-60, 60)},
+        {"groove", choice(o.groove, kGrooveFormNames),
+         "section that passes fill: none is one pass; fillet lies between the flanks, v about their bisector, bevel1 "
+         "between flank 2 and a bevel on the side of flank 1, bevel2 the other way round"},
+        {"groove_depth_mm", &o.groove_depth_mm, "height of the fill above the root, along the groove's middle, mm",
+         within(0.5, 200)},
+        {"groove_root_mm", &o.groove_root_mm, "width of the groove at its root, mm", within(0, 50)},
+        {"groove_angle_deg", &o.groove_angle_deg, "angle between the sides of a v, bevel1 or bevel2, deg",
+         within(4, 160)},
+        {"bead_area_mm2", &o.bead_area_mm2, "section of one bead, mm2: wire feed times wire section over speed",
+         within(0.5, 1000)},
+        {"bead_width_to_height", &o.bead_width_to_height, "width of a bead over its height", within(0.5, 8)},
+        {"pass_order", choice(o.pass_order, kPassOrderNames), "side from which the beads of a layer are welded"},
+        {"pass_tilt_deg", &o.pass_tilt_deg, "lean of the torch away from a groove's side at the beads beside it, deg",
+         within(0, 45)},
+        {"arm", &o.arm,
+         "robot arm that makes the travel: abb-irb-1600-6-1.2, abb-irb-1600-8-1.45, ur10e, kuka-kr-16-2, fanuc-m-10ia, "
+         "or a URDF file; empty: none. It stands where export.base_from_scan says"},
+        {"flange_from_tool",
+         &o.flange_from_tool,
+         "pose of the torch's tip in the arm's flange: x, y, z mm, qw, qx, qy, qz",
+         {},
+         7},
+        {"arm_roll_deg", &o.arm_roll_deg, "most that the arm may turn the torch about its wire, either way, deg",
+         within(0, 180)},
+        {"arm_acceleration_deg_s2", &o.arm_acceleration_deg_s2, "acceleration limits of the arm's axes, deg/s2",
+         above(0), 6},
     };
 }
 
-Plan plan(std::span<const SeamModel> models, const PlanOptions& options) {
+std::vector<std::string> plan_problems(const PlanOptions& options) {
+    const auto& pose = options.flange_from_tool;
+    double norm = 0;
+    bool finite = pose.size() == 7;
+    for (std::size_t i = 0; finite && i < pose.size(); ++i) {
+        finite = std::isfinite(pose[i]);
+        norm = i >= 3 ? std::hypot(norm, pose[i]) : 0;
+    }
+    if (finite && std::abs(norm - 1) <= 1e-6) {
+        return {};
+    }
+    return {"flange_from_tool: the quaternion qw, qx, qy, qz has a length of " + number(norm) +
+            "; x, y, z in mm and a quaternion of length 1 were needed"};
+}
+
+Plan plan(std::span<const SeamModel> models, const PlanOptions& options, const std::optional<ArmCell>& cell) {
     ensure(options.speed_mm_s > 0 && options.air_speed_mm_s > 0 && options.approach_mm > 0 && options.retract_mm > 0 &&
                options.chord_tolerance_mm > 0 && options.max_turn_deg > 0,
            "plan options are within their bounds");
     Plan result;
-    std::vector<std::vector<Waypoint>> seams;
+    std::vector<std::vector<Waypoint>> welds;
     for (std::size_t i = 0; i < models.size(); ++i) {
-        const TorchPath path(models[i], static_cast<int>(i), options);
-        const WeldPoses weld = weld_poses(path, options);
-        seams.push_back(weld_waypoints(path, weld.poses, options));
-        result.max_chord_error_mm = std::max(result.max_chord_error_mm, weld.max_chord_error_mm);
-        measure(result, seams.back());
+        add_welds(models[i], static_cast<int>(i), options, welds, result);
     }
-    for (const auto& weld : seams) {
-        const Waypoint approach =
-            backed_off(weld.front(), WaypointKind::approach, options.approach_mm, options.air_speed_mm_s);
-        if (!result.waypoints.empty()) {
-            const double clearance = std::min(options.approach_mm, options.retract_mm);
-            if (auto air = air_point(result.waypoints.back(), approach, seams, clearance)) {
-                result.waypoints.push_back(std::move(*air));
-            }
-        }
-        result.waypoints.push_back(approach);
-        result.waypoints.insert(result.waypoints.end(), weld.begin(), weld.end());
-        result.waypoints.push_back(
-            backed_off(weld.back(), WaypointKind::retract, options.retract_mm, options.air_speed_mm_s));
-    }
-    if (!result.waypoints.empty()) {
-        number_and_time(result.waypoints);
-        result.duration_s = result.waypoints.back().time_s;
+    join(welds, options, result);
+    if (cell && !result.waypoints.empty()) {
+        add_arm(result, *cell, options);
+        measure_again(result);
     }
     return result;
 }

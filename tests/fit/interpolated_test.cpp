@@ -15,10 +15,11 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 using enum FitModel;
 
-const std::vector<FitModel> kOpen{natural,    clamped,        not_a_knot,      akima,  pchip,   linear,
-                                  parametric, newton_forward, newton_backward, bessel, lagrange};
-const std::vector<FitModel> kClosed{periodic,       akima,           pchip,  linear,  parametric,
-                                    newton_forward, newton_backward, bessel, lagrange};
+const std::vector<FitModel> kOpen{natural, clamped,    not_a_knot,     akima,           pchip,
+                                  linear,  parametric, newton_forward, newton_backward, stirling,
+                                  bessel,  lagrange,   newton_divided};
+const std::vector<FitModel> kClosed{periodic,        akima,    pchip,  linear,   parametric,    newton_forward,
+                                    newton_backward, stirling, bessel, lagrange, newton_divided};
 
 FitOptions with(FitModel model, FitAxis axis = FitAxis::length) {
     FitOptions options;
@@ -106,11 +107,12 @@ TEST(Interpolated, IsTheMethodItself) {
     for (const auto& [model, method] :
          {std::pair(natural, Method::natural), std::pair(clamped, Method::clamped),
           std::pair(not_a_knot, Method::not_a_knot), std::pair(akima, Method::akima), std::pair(pchip, Method::pchip),
-          std::pair(linear, Method::linear), std::pair(lagrange, Method::newton_divided)}) {
+          std::pair(linear, Method::linear), std::pair(lagrange, Method::newton_divided),
+          std::pair(newton_divided, Method::lagrange)}) {
         const SeamModel fitted = fit(seam, nodes, with(model));
         const Interpolant fx = interpolate(method, s, x, {}), fy = interpolate(method, s, y, {}),
                           fz = interpolate(method, s, z, {});
-        const double tolerance = model == lagrange ? kPolynomialTolerance_mm : 1e-10;
+        const double tolerance = model == lagrange || model == newton_divided ? kPolynomialTolerance_mm : 1e-10;
         for (int k = 0; k <= 1000; ++k) {
             const double at = std::min(length * k / 1000, s.back());
             const Vector3d expected(fx.value(at), fy.value(at), fz.value(at));
@@ -123,9 +125,9 @@ TEST(Interpolated, IsTheMethodItself) {
 TEST(Interpolated, PolynomialsComeOut) {
     for (const double quintic : {0.0, 12.0}) {
         const Seam seam = seam_along(Polynomial{quintic}, 601, false);
-        std::vector<FitModel> models{newton_forward, newton_backward, bessel, lagrange};
+        std::vector<FitModel> models{newton_forward, newton_backward, bessel, lagrange, newton_divided};
         if (quintic == 0) {
-            models.push_back(not_a_knot);
+            models.insert(models.end(), {not_a_knot, stirling});
         }
         for (const FitModel model : models) {
             const SeamModel fitted = fit(seam, every(seam, 60), with(model, FitAxis::x));
@@ -141,6 +143,49 @@ TEST(Interpolated, PolynomialsComeOut) {
     EXPECT_GT(cubic, 1e-3);
     low.degree = 4;
     EXPECT_EQ(largest_error(fit(seam, every(seam, 60), low), Polynomial{12}), cubic) << "Lagrange's degree is odd";
+}
+
+// Of degree 2 the blend of Stirling's formulas is Overhauser's curve (1968): Hermite's cubics with central differences
+// as slopes.
+TEST(Interpolated, StirlingOfDegreeTwoIsOverhausers) {
+    const Polynomial course{12};
+    const Seam seam = seam_along(course, 601, false);
+    FitOptions two = with(stirling, FitAxis::x);
+    two.degree = 2;
+    const SeamModel fitted = fit(seam, every(seam, 60), two);
+    // x is linear in the parameter, so nodes at equal steps of x are those of the course.
+    std::vector<Vector3d> p;
+    for (int k = 0; k <= 10; ++k) {
+        p.push_back(course(0.1 * k));
+    }
+    for (std::size_t k = 1; k + 2 < p.size(); ++k) {
+        const Vector3d m0 = 0.5 * (p[k + 1] - p[k - 1]), m1 = 0.5 * (p[k + 2] - p[k]);
+        for (int i = 0; i <= 10; ++i) {
+            const double u = 0.1 * i, u2 = u * u, u3 = u2 * u;
+            const Vector3d expected =
+                (2 * u3 - 3 * u2 + 1) * p[k] + (u3 - 2 * u2 + u) * m0 + (3 * u2 - 2 * u3) * p[k + 1] + (u3 - u2) * m1;
+            EXPECT_LT((position(fitted.curve, nearest_parameter(fitted.curve, expected)) - expected).norm(), 2e-5);
+        }
+    }
+}
+
+TEST(Interpolated, StirlingDoesNotJumpOrKink) {
+    const Seam seam = seam_along(Wave{}, 401, false);
+    const SeamModel fitted = fit(seam, every(seam, 40), with(stirling));
+    Vector3d before = tangent(fitted.curve, first_parameter(fitted.curve));
+    const double length = last_parameter(fitted.curve);
+    for (int k = 1; k <= 20000; ++k) {
+        const Vector3d now = tangent(fitted.curve, length * k / 20000);
+        EXPECT_LT((now - before).norm(), 0.005) << k;
+        before = now;
+    }
+    EXPECT_LT(largest_error(fitted, Wave{}), 0.3);
+    FitOptions one = with(stirling);
+    one.degree = 1;
+    FitOptions newton = with(newton_forward);
+    newton.degree = 1;
+    EXPECT_EQ(fit(seam, every(seam, 40), one).length_mm, fit(seam, every(seam, 40), newton).length_mm)
+        << "there is no formula of degree 0";
 }
 
 // Over nodes at equal steps the error of a spline is |f''''| h^4 / 384 to the leading order (Hall & Meyer 1976).

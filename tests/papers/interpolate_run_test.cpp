@@ -41,7 +41,7 @@ TEST(InterpolateRun, RanksTheMethodsOnEachSeam) {
         EXPECT_TRUE(seam.at("best").at("pass").get<bool>());
         for (const auto* part : {"equal", "curvature"}) {
             const Json& methods = seam.at(part).at("methods");
-            EXPECT_EQ(methods.size(), part == std::string("equal") ? 15u : 12u);
+            EXPECT_EQ(methods.size(), part == std::string("equal") ? 17u : 13u);
             for (std::size_t i = 0; i < methods.size(); ++i) {
                 ASSERT_EQ(methods[i].at("trials").size(), 2u);
                 EXPECT_GT(methods[i].at("trials")[0].at("rms_mm").get<double>(), 0);

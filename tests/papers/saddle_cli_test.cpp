@@ -1,3 +1,6 @@
+#include <cmath>
+#include <numbers>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -135,6 +138,103 @@ TEST(SaddleCli, EveryHeaderGivesPrograms) {
         const Outcome run = saddle_program(out.path(), words);
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_TRUE(fs::exists(out.path() / "programs" / "abb" / "seampath.mod"));
+    }
+}
+
+TEST(SaddleCli, WeldsInThePassesThatFillAGroove) {
+    const TestFolder out;
+    const Outcome run = saddle_program(
+        out.path(), paper_and({"--groove", "fillet", "--groove-depth-mm", "8", "--bead-area-mm2", "20", "--json"}));
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json passes = json::parse(run.out).at("passes");
+    ASSERT_EQ(passes.size(), 4u);
+    // Mean of h^2 tan(psi / 2) round the seam, psi = 90 + asin(sin^2 / 4) deg.
+    double sum = 0, mean = 0;
+    for (const json& pass : passes) {
+        sum += pass.at("area_mm2").get<double>();
+    }
+    for (int k = 0; k < 3600; ++k) {
+        const double sine = std::sin(2 * std::numbers::pi * k / 3600);
+        mean += 64 * std::tan(0.5 * (std::numbers::pi / 2 + std::asin(0.25 * sine * sine))) / 3600;
+    }
+    EXPECT_NEAR(sum, mean, 2e-3 * mean) << "stations are nearly in step with the branch angle";
+    const Table table = read_table(out.path() / "passes.csv");
+    ASSERT_EQ(table.rows.size(), 4u);
+    EXPECT_NEAR(table.rows[3][6], passes[3].at("tilt_deg").get<double>(), 1e-9);
+    const std::string waypoints = text_of(out.path() / "waypoints.csv");
+    std::size_t starts = 0;
+    for (auto at = waypoints.find(",weld_start,"); at != std::string::npos;
+         at = waypoints.find(",weld_start,", at + 1)) {
+        ++starts;
+    }
+    EXPECT_EQ(starts, 4u);
+    EXPECT_THAT(text_of(out.path() / "report.json"), HasSubstr("\"name\": \"passes\""));
+    const Outcome paper = saddle_program(out.path(), paper_and({"--groove", "fillet", "--pose", "paper"}));
+    EXPECT_EQ(paper.status, 2);
+    EXPECT_THAT(paper.err, HasSubstr("--pose: the paper's law knows one pass"));
+    // One pass leaves no table of several.
+    ASSERT_EQ(saddle_program(out.path(), paper_and({"--robot", "csv"})).status, 0);
+    EXPECT_FALSE(fs::exists(out.path() / "passes.csv"));
+}
+
+const Words kPipes{"--header-radius-mm",
+                   "200",
+                   "--branch-radius-mm",
+                   "60",
+                   "--set",
+                   "plan.flange_from_tool=[40, 0, 300, 0.95371695, 0, 0.30070580, 0]"};
+
+Outcome pipes_with_arm(const fs::path& out, const std::string& arm, const std::string& place, Words more = {}) {
+    Words words = kPipes;
+    words.insert(words.end(), {"--set", "plan.arm=" + arm, "--set", "export.base_from_scan=" + place});
+    words.insert(words.end(), more.begin(), more.end());
+    return saddle_program(out, words);
+}
+
+TEST(SaddleCli, TakesTheTravelThroughAnArm) {
+    const TestFolder out, other;
+    const std::string place = "[850, 0, 0, 1, 0, 0, 0]";
+    const Outcome run = pipes_with_arm(out.path(), "abb-irb-1600-8-1.45", place);
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("IRB 1600-8/1.45 makes the travel"));
+    std::size_t rows = 0;
+    const std::string joints = text_of(out.path() / "joints.csv");
+    for (const char c : joints) {
+        rows += c == '\n' ? 1 : 0;
+    }
+    EXPECT_GT(rows, 100u);
+    EXPECT_THAT(joints, AllOf(HasSubstr("# arm: IRB 1600-8/1.45"), HasSubstr(",j1_deg,j2_deg,"),
+                              HasSubstr("\n0,weld_start,1,")));
+    const std::string page = text_of(out.path() / "report.html");
+    for (const auto* seen : {"<h2>Robot arm</h2>", "<b>Axis 6</b>", "<b>Manipulability</b>", "arm_limit_margin_deg"}) {
+        EXPECT_NE(page.find(seen), std::string::npos) << seen;
+    }
+    // The same arm from its file.
+    const std::string urdf = std::string(SEAMPATH_SOURCE_DIR) + "/pipeline/arms/abb-irb-1600-8-1.45.urdf";
+    ASSERT_EQ(pipes_with_arm(other.path(), urdf, place).status, 0);
+    EXPECT_EQ(text_of(other.path() / "joints.csv"), joints);
+}
+
+TEST(SaddleCli, AnArmThatCannotReachGetsNoProgram) {
+    const TestFolder out;
+    const Outcome run = pipes_with_arm(out.path(), "ur10e", "[2000, 0, 0, 1, 0, 0, 0]");
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_THAT(run.out, AllOf(HasSubstr("UR10e can't make seam 0: at approach"), HasSubstr("part moved by"),
+                               HasSubstr("none: the arm can't make it")));
+    EXPECT_FALSE(fs::exists(out.path() / "joints.csv"));
+    EXPECT_FALSE(fs::exists(out.path() / "programs"));
+    const json report = json::parse(text_of(out.path() / "report.json"));
+    EXPECT_EQ(report.at("verdict"), "fail");
+    EXPECT_THAT(report.at("sentence").get<std::string>(), HasSubstr("can't make seam 0"));
+    const std::vector<std::pair<Words, std::string>> cases{
+        {{"--set", "plan.arm=ur10"}, "did you mean \"ur10e\"?"},
+        {{"--set", "plan.flange_from_tool=[0, 0, 0, 2, 0, 0, 0]"}, "--set: /plan/flange_from_tool: the quaternion"},
+        {{"--set", "plan.arm_acceleration_deg_s2=[1, 2]"}, "/plan/arm_acceleration_deg_s2"},
+        {{"--set", "plan.arm=" + std::string(SEAMPATH_SOURCE_DIR) + "/README.md"}, "README.md:"}};
+    for (const auto& [more, message] : cases) {
+        const Outcome wrong = pipes_with_arm(out.path(), "ur10e", "[700, 0, 0, 1, 0, 0, 0]", more);
+        EXPECT_EQ(wrong.status, 2) << message;
+        EXPECT_THAT(wrong.err, HasSubstr(message));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "stages/nominal/nominal.hpp"
+#include "stages/plan/plan.hpp"
 #include "stages/text.hpp"
 #include "tests/papers/saddles.hpp"
 #include "tests/papers/sections.hpp"
@@ -111,6 +112,36 @@ std::string general_position() {
            markdown_table(rows);
 }
 
+std::string groove_passes() {
+    const SeamModel model = nominal_model(pipes(600, 150), PoseLaw::bisector, 0);
+    PlanOptions options;
+    options.groove = GrooveForm::fillet;
+    options.groove_depth_mm = 8;
+    options.bead_area_mm2 = 20;
+    Rows rows{{"pass", "layer", "across, mm", "up, mm", "lean, °", "section, mm²"}};
+    double area = 0;
+    for (const PlannedPass& pass : plan(std::vector{model}, options).passes) {
+        rows.push_back({std::to_string(rows.size()), std::to_string(pass.layer + 1), fixed(pass.across_mm, 2),
+                        fixed(pass.up_mm, 2), fixed(pass.tilt_rad / kDegree, 1),
+                        fixed(pass.least_mm2, 1) + " to " + fixed(pass.most_mm2, 1)});
+        area += pass.area_mm2;
+    }
+    return "The introduction asks for several layers according to the form of the groove, and gives no rule. A fillet "
+           "8 mm deep round 150 / 600 has a section of h² tan(ψ/2), " +
+           fixed(area, 1) + " mm² in the mean; in beads of 20 mm², twice as wide as high, that is\n\n" +
+           markdown_table(rows) +
+           "Across counts towards the branch, up along the bisector, the lean of the torch towards the branch; every "
+           "pass takes the same share of the section all the way round, as it opens and closes.\n\n"
+           "    build/seampath saddle --header-radius-mm 600 --branch-radius-mm 150 --groove fillet --groove-depth-mm "
+           "8 "
+           "\\\n        --bead-area-mm2 20 --out out/passes\n\n"
+           "A saddle that `seampath run` fitted to a scan is held against its drawing, dimension by dimension and "
+           "along "
+           "the seam, by\n\n"
+           "    build/seampath saddle --from out/part --header-radius-mm 60 --branch-radius-mm 30 --out "
+           "out/as-built\n\n";
+}
+
 }  // namespace
 
 std::string saddle_section() {
@@ -121,7 +152,7 @@ std::string saddle_section() {
            "    build/seampath saddle --header-radius-mm 600 --branch-radius-mm 150 --step equal-angle --pose paper "
            "--out "
            "out/saddle\n\n" +
-           table_1() + speeds() + poses() + general_position() +
+           table_1() + speeds() + poses() + general_position() + groove_passes() +
            "Misprints: (2) is x′ = x cos Δ + y sin Δ, y′ = y cos Δ − x sin Δ; (5) is y² − z² = r² − R²; (10) has no "
            "absolute "
            "value; (20) lacks the sign of x. (23) and (24) are right but have a pole at θ = 90°; |dp/dθ| has none.\n\n";

@@ -158,7 +158,8 @@ std::string scanned_section() {
            mean_table(seams, &SeamComparison::curvature) +
            "Bold: the best of its seam, to the digits shown. A dash: the method can't serve the seam, for it has ends "
            "and the "
-           "seam has none, or the other way round. "
+           "seam has none, or the other way round. Stirling's line jumps midway between two nodes; here the formulas "
+           "about both nodes count, each the more the nearer its node is. Divided differences give Lagrange's line. "
            "With nodes by curvature, Marin's (31) is nearer than chord length on " +
            wins(seams, "parametric (exact)", "parametric (chord)") +
            " seams, and Akima's line nearer than the parametric spline over chord length on " +

@@ -400,13 +400,24 @@ TEST(Plan, RefusesASeamWithinAFewTolerances) {
 TEST(Plan, OptionsHaveBoundsAndMeanings) {
     PlanOptions options;
     const Fields fields = describe(options);
-    EXPECT_EQ(fields.size(), 8u);
+    EXPECT_EQ(fields.size(), 20u);
     for (const Field& field : fields) {
         EXPECT_FALSE(field.meaning.empty()) << field.key;
-        const double value = *std::get<double*>(field.value);
-        EXPECT_GE(value, field.bounds.low) << field.key;
-        EXPECT_LE(value, field.bounds.high) << field.key;
+        std::vector<double> values;
+        if (const auto* number = std::get_if<double*>(&field.value)) {
+            values.push_back(**number);
+        } else if (const auto* list = std::get_if<std::vector<double>*>(&field.value)) {
+            values = **list;
+            EXPECT_EQ(static_cast<int>(values.size()), field.length) << field.key;
+        }
+        for (const double value : values) {
+            EXPECT_GE(value, field.bounds.low) << field.key;
+            EXPECT_LE(value, field.bounds.high) << field.key;
+        }
     }
+    EXPECT_TRUE(plan_problems(options).empty());
+    options.flange_from_tool = {0, 0, 0, 0.5, 0, 0, 0};
+    EXPECT_THAT(plan_problems(options), testing::ElementsAre(HasSubstr("flange_from_tool: the quaternion")));
 }
 
 }  // namespace
