@@ -12,8 +12,8 @@ namespace seampath {
 namespace exporting {
 namespace {
 
-constexpr std::array<const Format*, kRobotNames.size()> kFormats{&kCsv,   &kJson, &kAbb,    &kKuka,
-                                                                 &kFanuc, &kUr,   &kYaskawa};
+constexpr std::array<const Format*, kRobotNames.size()> kFormats{&kCsv, &kJson,    &kAbb,      &kKuka, &kFanuc,
+                                                                 &kUr,  &kYaskawa, &kLinuxcnc, &kRos,  &kNoether};
 
 std::string trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');

@@ -12,7 +12,8 @@
 namespace seampath {
 
 /// Every robot, in the order of the table of formats in export.cpp, which has a row for each.
-inline constexpr std::array<std::string_view, 7> kRobotNames{"csv", "json", "abb", "kuka", "fanuc", "ur", "yaskawa"};
+inline constexpr std::array<std::string_view, 10> kRobotNames{"csv", "json",    "abb",      "kuka", "fanuc",
+                                                              "ur",  "yaskawa", "linuxcnc", "ros",  "noether"};
 
 /// Numbers and names of what lives on the controller are the cell's own: those that a language can't do without have no
 /// default, and naming that robot without them is an error.
@@ -59,6 +60,13 @@ struct ExportOptions {
     std::optional<double> yaskawa_arc_start;
     std::optional<double> yaskawa_arc_end;
     std::optional<double> yaskawa_weave;
+
+    std::optional<double> linuxcnc_tool;         ///< none: the one that is in use
+    std::optional<double> linuxcnc_work_offset;  ///< 1 to 9: G54 to G59.3; none: the one that is in use
+    std::optional<double> linuxcnc_arc_output;
+    double linuxcnc_tolerance_mm = 0.01;
+
+    std::string ros_frame = "base_link";
 };
 Fields describe(ExportOptions&);
 

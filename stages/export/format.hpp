@@ -54,12 +54,15 @@ struct Format {
     std::vector<Target> (*prepare)(std::vector<Target>) = nullptr;
 };
 
-extern const Format kCsv, kJson, kAbb, kKuka, kFanuc, kUr, kYaskawa;
+extern const Format kCsv, kJson, kAbb, kKuka, kFanuc, kUr, kYaskawa, kLinuxcnc, kRos, kNoether;
 std::vector<Target> read_abb(const std::vector<TextFile>&);
 std::vector<Target> read_kuka(const std::vector<TextFile>&);
 std::vector<Target> read_fanuc(const std::vector<TextFile>&);
 std::vector<Target> read_ur(const std::vector<TextFile>&);
 std::vector<Target> read_yaskawa(const std::vector<TextFile>&);
+std::vector<Target> read_linuxcnc(const std::vector<TextFile>&);
+std::vector<Target> read_ros(const std::vector<TextFile>&);
+std::vector<Target> read_noether(const std::vector<TextFile>&);
 
 /// Every row, in the order of kRobotNames.
 const Format& format(std::size_t robot);

@@ -5,7 +5,7 @@ namespace seampath {
 Fields describe(ExportOptions& o) {
     return {
         {"robots", &o.robots,
-         "robots to write programs for, comma-separated: csv, json, abb, kuka, fanuc, ur, yaskawa"
+         "robots to write programs for, comma-separated: csv, json, abb, kuka, fanuc, ur, yaskawa, linuxcnc, ros, "
          "noether"},
         {"program_name", &o.program_name, "name of the program on the controller; a letter, then letters, digits, _"},
         {"even_if_out_of_tolerance", &o.even_if_out_of_tolerance,
@@ -64,6 +64,15 @@ Fields describe(ExportOptions& o) {
         {"yaskawa_arc_end", &o.yaskawa_arc_end, "Yaskawa: arc end file of ARCOF AEF#(n); none: motion only",
          within(1, 64)},
         {"yaskawa_weave", &o.yaskawa_weave, "Yaskawa: weaving file of WVON WEV#(n); none: no weaving", within(1, 255)},
+        {"linuxcnc_tool", &o.linuxcnc_tool, "LinuxCNC: number of the tool, Tn M6 G43; none: the one in use",
+         within(1, 99999)},
+        {"linuxcnc_work_offset", &o.linuxcnc_work_offset,
+         "LinuxCNC: work offset that positions are in, 1 to 9 for G54 to G59.3; none: the one in use", within(1, 9)},
+        {"linuxcnc_arc_output", &o.linuxcnc_arc_output,
+         "LinuxCNC: digital output that strikes the arc, M62 Pn; none: motion only", within(0, 63)},
+        {"linuxcnc_tolerance_mm", &o.linuxcnc_tolerance_mm, "LinuxCNC: G64 P, how far blends may leave a weld",
+         within(0.001, 1)},
+        {"ros_frame", &o.ros_frame, "ROS: frame_id of the robot's base"},
     };
 }
 

@@ -87,7 +87,8 @@ PathCheck check_path(const Program& program, const Format& format, const std::ve
         }
         const std::size_t start = written[k].move == Move::circular ? k - 2 : k - 1;
         const std::size_t first = written[start].waypoint, last = written[k].waypoint;
-        if (last <= first + 1 || written[start].at.seam != written[k].at.seam) {
+        const bool weld = written[k].at.kind == WaypointKind::weld || written[k].at.kind == WaypointKind::weld_end;
+        if (last <= first + 1 || !weld) {
             continue;
         }
         // The move as it was read, past the waypoints as they were planned.

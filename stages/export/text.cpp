@@ -255,6 +255,25 @@ double Scanner::number() {
     return value;
 }
 
+char Scanner::letter() {
+    if (done() || rest().front() < 'A' || rest().front() > 'Z') {
+        fail("a letter");
+    }
+    return file_->text[at_++];
+}
+
+double Scanner::decimal() {
+    skip();
+    const std::string_view left = rest();
+    double value = 0;
+    const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), value, std::chars_format::fixed);
+    if (error != std::errc() || !std::isfinite(value)) {
+        fail("a number");
+    }
+    at_ += static_cast<std::size_t>(end - left.data());
+    return value;
+}
+
 std::string Scanner::quoted() {
     expect('"');
     const auto end = file_->text.find('"', at_);

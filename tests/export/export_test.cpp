@@ -162,20 +162,44 @@ TEST(Export, ThreeHundredRandomPlansComeBack) {
     std::mt19937_64 generator(7);
     for (int i = 0; i < 300; ++i) {
         const Plan plan = test::random_plan(generator);
-        for (const ExportOptions& options : {test::cell_options(), test::arc_options()}) {
+        for (ExportOptions options : {test::cell_options(), test::arc_options()}) {
+            options.robots = test::robots_without("linuxcnc");
             for (const ProgramFile& file : export_programs(plan, options)) {
                 const bool exact = file.robot == "csv" || file.robot == "json";
-                EXPECT_LE(file.max_position_error_mm, exact ? 0 : 0.0005 * std::sqrt(3) + 1e-9)
+                const auto& format = *std::find_if(kRobotNames.begin(), kRobotNames.end(),
+                                                   [&](std::string_view name) { return name == file.robot; });
+                const double rounding_mm =
+                    exporting::format(static_cast<std::size_t>(&format - kRobotNames.data())).position_rounding_mm;
+                EXPECT_LE(file.max_position_error_mm, exact ? 0 : rounding_mm * std::sqrt(3) + 2e-9)
                     << file.robot << " " << i;
                 EXPECT_LE(file.max_orientation_error_deg, exact                   ? 0
                                                           : file.robot == "fanuc" ? 9e-4
                                                                                   : 1.3e-4)
                     << file.robot << " " << i;
                 EXPECT_LE(file.max_speed_error, 1e-3) << file.robot << " " << i;
-                EXPECT_EQ(file.position_rounding_mm, exact ? 0 : 0.0005);
+                EXPECT_EQ(file.position_rounding_mm, rounding_mm);
             }
         }
     }
+}
+
+TEST(Export, RandomPlansComeBackFromLinuxcncOrAreRefused) {
+    std::mt19937_64 generator(8);
+    int seams = 0, refused = 0;
+    for (int i = 0; i < 400; ++i) {
+        const Plan plan = test::random_plan(generator);
+        ExportOptions options = i % 2 ? test::arc_options() : test::cell_options();
+        options.robots = "linuxcnc";
+        try {
+            const ProgramFile file = export_programs(plan, options).at(0);
+            EXPECT_LE(file.max_orientation_error_deg, 2e-5);
+            seams += plan.waypoints.back().seam + 1;
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), HasSubstr("straight up or down"));
+            ++refused;
+        }
+    }
+    EXPECT_GE(seams, 500) << refused << " refused";
 }
 
 TEST(Export, PlannedSeamsComeBack) {
@@ -190,8 +214,14 @@ TEST(Export, PlannedSeamsComeBack) {
 }
 
 TEST(Export, SameBytesEachTime) {
+    ExportOptions options = test::arc_options();
+    options.robots = test::robots_without("linuxcnc");
     const Plan plan = test::golden_plan();
-    const auto a = export_programs(plan, test::arc_options()), b = export_programs(plan, test::arc_options());
+    auto a = export_programs(plan, options), b = export_programs(plan, options);
+    options.robots = "linuxcnc";
+    for (auto* files : {&a, &b}) {
+        files->push_back(export_programs(test::golden_plan_for("linuxcnc"), options).at(0));
+    }
     std::vector<std::string_view> robots;
     for (std::size_t i = 0; i < a.size(); ++i) {
         EXPECT_EQ(a[i].content, b[i].content);
@@ -202,7 +232,7 @@ TEST(Export, SameBytesEachTime) {
             << "ASCII " << a[i].file_name;
     }
     robots.erase(std::unique(robots.begin(), robots.end()), robots.end());
-    EXPECT_THAT(robots, testing::ElementsAreArray(kRobotNames));
+    EXPECT_THAT(robots, testing::UnorderedElementsAreArray(kRobotNames));
 }
 
 TEST(Export, JsonIsJsonAndSaysItsUnits) {

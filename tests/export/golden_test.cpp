@@ -23,7 +23,7 @@ std::string content(const fs::path& file) {
     return text.str();
 }
 
-void expect_golden(const std::string& folder, const ExportOptions& options, const Plan& plan = test::golden_plan()) {
+void expect_golden(const std::string& folder, const ExportOptions& options, const Plan& plan) {
     const fs::path golden = fs::path(SEAMPATH_SOURCE_DIR) / "tests" / "golden" / folder;
     const char* update = std::getenv("SEAMPATH_UPDATE_GOLDEN");
     for (const ProgramFile& file : export_programs(plan, options)) {
@@ -45,13 +45,20 @@ TEST(Golden, ProgramsThatWeldInAMovedFrame) {
     options.base_from_scan_sigma_mm = 0.12;
     options.base_from_scan_sigma_deg = 0.02;
     options.base_from_scan = {1200, -340, 75.5, 0.5, 0.5, -0.5, 0.5};
-    expect_golden("weld", options);
+    options.robots = test::robots_without("linuxcnc");
+    expect_golden("weld", options, test::golden_plan());
+    options.robots = "linuxcnc";
+    options.base_from_scan = {1200, -340, 75.5, 1, 0, 0, 0};
+    expect_golden("weld", options, test::golden_plan_for("linuxcnc"));
 }
 
 TEST(Golden, ProgramsThatOnlyMove) {
     ExportOptions options = test::cell_options();
     options.program_name = "golden";
-    expect_golden("move", options);
+    options.robots = test::robots_without("linuxcnc");
+    expect_golden("move", options, test::golden_plan());
+    options.robots = "linuxcnc";
+    expect_golden("move", options, test::golden_plan_for("linuxcnc"));
 }
 
 // A weld along half a circle, at numbers that every machine computes alike.

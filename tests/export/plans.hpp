@@ -66,13 +66,34 @@ inline Plan golden_plan() {
          waypoint(1, weld_end, 314, {50, 0, 0}, c, 12), waypoint(1, retract, 314, {50, 0, 25}, c, 100)});
 }
 
+/// The golden plan as that robot can have it: LinuxCNC's angles have no way from one of its orientations, tool X
+/// straight down, to the next, and noether has welds only.
+inline Plan golden_plan_for(std::string_view robot) {
+    Plan plan = golden_plan();
+    if (robot == "linuxcnc") {
+        const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitZ());
+        for (Waypoint& w : plan.waypoints) {
+            w.q = (turn * w.q).normalized();
+        }
+    }
+    return plan;
+}
+
+/// Every robot but those named.
+inline std::string robots_without(std::string_view left_out) {
+    std::string robots;
+    for (const std::string_view name : kRobotNames) {
+        if (left_out.find(name) == std::string_view::npos) {
+            robots += (robots.empty() ? "" : ",") + std::string(name);
+        }
+    }
+    return robots;
+}
+
 /// The numbers of a cell that no robot can do without.
 inline ExportOptions cell_options() {
     ExportOptions options;
-    options.robots.clear();
-    for (const std::string_view name : kRobotNames) {
-        options.robots += (options.robots.empty() ? "" : ",") + std::string(name);
-    }
+    options.robots = robots_without("");
     options.kuka_tool = 6;
     options.fanuc_tool = 2;
     options.fanuc_user_frame = 1;
@@ -100,6 +121,9 @@ inline ExportOptions arc_options() {
     options.yaskawa_arc_start = 4;
     options.yaskawa_arc_end = 5;
     options.yaskawa_weave = 9;
+    options.linuxcnc_tool = 2;
+    options.linuxcnc_work_offset = 7;
+    options.linuxcnc_arc_output = 1;
     return options;
 }
 

@@ -21,7 +21,7 @@ using exporting::TextFile;
 class ReadBack : public testing::TestWithParam<std::size_t> {
 protected:
     const Format& format() const { return exporting::format(GetParam()); }
-    const Plan plan = test::golden_plan();
+    const Plan plan = test::golden_plan_for(format().name);
     const ExportOptions options = test::arc_options();
     const Program program = program_of(plan, format(), options);
     const std::vector<TextFile> files = format().write(program, options);
@@ -47,8 +47,9 @@ TEST_P(ReadBack, AcceptsWhatTheWriterWrote) {
 std::vector<std::size_t> move_lines(const std::vector<std::string>& lines) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        for (const char* mark : {"[[", "(p[0.0", "(p[-0.0", "(p[0.1", "\"station_mm\":", ",weld", ",approach,",
-                                 ",retract,", ",air,", "LIN P", "PTP P", ":L P[", ":J P[", "MOVL C", "MOVJ C"}) {
+        for (const char* mark :
+             {" [[", "(p[0.0", "(p[-0.0", "(p[0.1", "\"station_mm\":", ",weld", ",approach,", ",retract,", ",air,",
+              "LIN P", "PTP P", ":L P[", ":J P[", "MOVL C", "MOVJ C", "G1 X", "- {position", "{x: "}) {
             if (lines[i].find(mark) != std::string::npos && lines[i].find("set_tcp") == std::string::npos &&
                 lines[i].front() != '#') {
                 found.push_back(i);
@@ -232,11 +233,31 @@ TEST(ReadBackRules, HoldTheLanguages) {
         {"yaskawa", "ARCON ASF#(4)", "ARCON ASF#(0)", "a number from 1 on"},
         {"yaskawa", "WVOF\r\n", "", "WVOF"},
         {"yaskawa", "ARCOF", "ARCOFF", "a known instruction"},
+        {"linuxcnc", "G21 ", "G20 ", "a known G code"},
+        {"linuxcnc", "G21 ", "", "G21, G90 and G94"},
+        {"linuxcnc", "G21 G90", "G21 G90 G90", "one word of a modal group"},
+        {"linuxcnc", " F510\n", " F500\n", "has a speed of 8.3"},
+        {"linuxcnc", "G64 P0.01", "G64", "a tolerance P with G64"},
+        {"linuxcnc", "M62 P1\n", "", "in turn"},
+        {"linuxcnc", "M62 P1", "M64 P1", "M62 or M63"},
+        {"linuxcnc", "M63 P1", "M62 P1", "in turn"},
+        {"linuxcnc", "M2\n", "", "a letter"},
+        {"linuxcnc", "M2\n", "M2\nM2\n", "the end of the file"},
+        {"linuxcnc", "; Written by", "; " + std::string(300, 'x'), "252 characters"},
+        {"linuxcnc", "A180.00000", "A-180.00000", "angles that go on without a jump"},
+        {"linuxcnc", "G43", "M6", "a tool"},
+        {"ros", "frame_id: base_link", "frame_id: base", "one frame"},
+        {"ros", "position", "pozition", "position"},
+        {"ros", "w: ", "v: ", "w was needed"},
+        {"ros", "header:", "headr:", "header"},
+        {"noether", "qw:", "w:", "members x, y, z, qw"},
+        {"noether", "]],", "]]", "']'"},
+        {"noether", "qx: 1.000000000000", "qx: 1.000100000000", "a unit quaternion"},
     };
     ExportOptions options = test::arc_options();
     options.program_name = "golden";
-    const Plan plan = test::golden_plan();
     for (const Damage& damage : all) {
+        const Plan plan = test::golden_plan_for(damage.robot);
         const Format& format = exporting::format(static_cast<std::size_t>(
             std::find(kRobotNames.begin(), kRobotNames.end(), damage.robot) - kRobotNames.begin()));
         const Program program = program_of(plan, format, options);
