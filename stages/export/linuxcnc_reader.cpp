@@ -29,6 +29,7 @@ public:
             at = end + 1;
         }
         while (!ended_) {
+            require(!scan_.done(), "M2");
             block();
             scan_.end_line();
         }
