@@ -21,7 +21,7 @@ constexpr double kMinSpeed_mm_s = 0.01;  // F has 4 decimals of a mm/min
 constexpr double kDegree = std::numbers::pi / 180;
 
 // What the rotation of a move may differ from the even one.
-constexpr double kMaxUneven = 0.002 * kDegree;
+constexpr double kMaxUneven = 0.0075 * kDegree;
 constexpr int kMaxHalvings = 9;
 
 // Angles z, y, x of the same rotation that are nearest to `before`: by whole turns, and by the other solution, which

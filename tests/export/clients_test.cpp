@@ -17,8 +17,8 @@
 #include "stages/geometry/pose.hpp"
 #include "stages/plan/plan.hpp"
 #include "tests/export/plans.hpp"
-#include "tests/pipeline/run_support.hpp"
 #include "tests/plan/models.hpp"
+#include "tests/test_folder.hpp"
 
 /// What programs of others make of our files. Each test is skipped where its program is not installed.
 namespace seampath {
