@@ -132,12 +132,6 @@ public:
     std::vector<Target> targets;
 
 private:
-    static void require(bool holds, const Scanner& place, const std::string& needed) {
-        if (!holds) {
-            place.fail(needed + " before this place");
-        }
-    }
-
     void call(const std::string& name, const Scanner& place, int depth) {
         require(depth < 10, place, "a call that is not of itself");
         for (const Module& m : modules_) {

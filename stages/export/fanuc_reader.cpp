@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "stages/export/text.hpp"
@@ -16,7 +15,6 @@ namespace {
 
 constexpr std::size_t kLongestName = 36;
 constexpr std::size_t kLongestRemark = 32;
-constexpr double kRadians = std::numbers::pi / 180;
 
 struct Position {
     Eigen::Vector3d p;
@@ -35,12 +33,6 @@ struct Loaded {
     std::map<double, Position> positions;
     bool welds = false;  // the application's section was there
 };
-
-void require(bool holds, const Scanner& place, const std::string& needed) {
-    if (!holds) {
-        place.fail(needed + " before this place");
-    }
-}
 
 void expect_word(Scanner& scan, const std::string& word) {
     require(scan.name() == word, scan, word);
@@ -156,9 +148,7 @@ Position position(Scanner& scan) {
     scan.expect(';');
     result.p = {numbers[0], numbers[1], numbers[2]};
     // Fixed axes: W about X first, then P about Y, then R about Z.
-    result.q = Eigen::AngleAxisd(numbers[5] * kRadians, Eigen::Vector3d::UnitZ()) *
-               Eigen::AngleAxisd(numbers[4] * kRadians, Eigen::Vector3d::UnitY()) *
-               Eigen::AngleAxisd(numbers[3] * kRadians, Eigen::Vector3d::UnitX());
+    result.q = turned(numbers[5], numbers[4], numbers[3]);
     return result;
 }
 
@@ -264,7 +254,7 @@ private:
     }
 
     void add(Scanner& scan, const Loaded& program, Move move) {
-        expect_word_p(scan);
+        expect_word(scan, "P");
         const auto found = program.positions.find(index(scan));
         require(found != program.positions.end(), scan, "a position of this program");
         const Position& position = found->second;
@@ -277,12 +267,6 @@ private:
         target.at.q = position.q;
         target.at.kind = arc_ ? WaypointKind::weld : WaypointKind::air;
         targets.push_back(target);
-    }
-
-    static void expect_word_p(Scanner& scan) {
-        if (scan.name() != "P") {
-            scan.fail("P[...] before this place");
-        }
     }
 
     // Joint moves have a share of the axes' speeds; a time is for the whole of a move.

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "stages/export/text.hpp"
@@ -12,7 +11,6 @@ namespace seampath::exporting {
 namespace {
 
 constexpr std::size_t kLongestName = 24;
-constexpr double kRadians = std::numbers::pi / 180;
 
 // Names are not case-sensitive.
 std::string identifier(Scanner& scan) {
@@ -74,9 +72,7 @@ Waypoint frame(Scanner& scan) {
     if (!(std::abs(a) <= 180 && std::abs(b) <= 90 && std::abs(c) <= 180)) {
         scan.fail("angles within 180, 90 and 180 deg before this place");
     }
-    w.q = Eigen::AngleAxisd(a * kRadians, Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(b * kRadians, Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(c * kRadians, Eigen::Vector3d::UnitX());
+    w.q = turned(a, b, c);
     return w;
 }
 
@@ -134,12 +130,6 @@ public:
 
 private:
     enum class Arc { off, on };
-
-    static void require(bool holds, const Scanner& place, const std::string& needed) {
-        if (!holds) {
-            place.fail(needed + " before this place");
-        }
-    }
 
     void run(const std::string& name, const Scanner& place, int depth) {
         require(depth < 3, place, "a call that is not of itself");

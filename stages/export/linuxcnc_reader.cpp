@@ -1,6 +1,5 @@
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "stages/export/text.hpp"
@@ -11,7 +10,6 @@ namespace seampath::exporting {
 namespace {
 
 constexpr std::size_t kLongestLine = 252;
-constexpr double kRadians = std::numbers::pi / 180;
 
 // One word: a letter and a number without an exponent.
 struct Word {
@@ -25,25 +23,21 @@ public:
         std::size_t at = 0;
         while (at < file.text.size()) {
             const std::size_t end = file.text.find('\n', at);
-            require(end != std::string::npos && end - at <= kLongestLine, "lines of at most 252 characters");
+            need(end != std::string::npos && end - at <= kLongestLine, "lines of at most 252 characters");
             at = end + 1;
         }
         while (!ended_) {
-            require(!scan_.done(), "M2");
+            need(!scan_.done(), "M2");
             block();
             scan_.end_line();
         }
-        require(scan_.done(), "the end of the file");
-        require(!arc_, "the output off at the end");
+        need(scan_.done(), "the end of the file");
+        need(!arc_, "the output off at the end");
     }
     std::vector<Target> targets;
 
 private:
-    void require(bool holds, const std::string& needed) const {
-        if (!holds) {
-            scan_.fail(needed + " before this place");
-        }
-    }
+    void need(bool holds, const std::string& needed) const { require(holds, scan_, needed); }
 
     Word word() {
         const char letter = scan_.letter();
@@ -57,10 +51,10 @@ private:
             const Word w = word();
             if (w.letter == 'G') {
                 const int modal = group_of(w.number);
-                require(group.emplace(modal, w.number).second, "one word of a modal group");
+                need(group.emplace(modal, w.number).second, "one word of a modal group");
             } else {
-                require(std::string("XYZABCFPTM").find(w.letter) != std::string::npos, "a known letter");
-                require(value.emplace(w.letter, w.number).second, "each letter once");
+                need(std::string("XYZABCFPTM").find(w.letter) != std::string::npos, "a known letter");
+                need(value.emplace(w.letter, w.number).second, "each letter once");
             }
         }
         modes(group, value);
@@ -71,11 +65,11 @@ private:
         }
         const bool moves = value.contains('X') || value.contains('Y') || value.contains('Z') || value.contains('A') ||
                            value.contains('B') || value.contains('C');
-        require(moves == group.contains(1), "G1 with coordinates");
+        need(moves == group.contains(1), "G1 with coordinates");
         if (moves) {
             move(value);
         } else {
-            require(!value.contains('F'), "a feed with a move");
+            need(!value.contains('F'), "a feed with a move");
         }
     }
 
@@ -85,7 +79,7 @@ private:
             {1, 1},   {17, 2},  {90, 3},  {94, 5},  {21, 6},    {40, 7},    {43, 8},    {80, 1},  {54, 12}, {55, 12},
             {56, 12}, {57, 12}, {58, 12}, {59, 12}, {59.1, 12}, {59.2, 12}, {59.3, 12}, {61, 13}, {64, 13}};
         const auto found = groups.find(code);
-        require(found != groups.end(), "a known G code");
+        need(found != groups.end(), "a known G code");
         // G80 ends canned cycles; it stands where no motion does.
         return code == 80 ? 100 : found->second;
     }
@@ -97,7 +91,7 @@ private:
             per_minute_ = per_minute_ || code == 94;
             if (modal == 13) {
                 exact_ = code == 61;
-                require(exact_ || (value.contains('P') && value.at('P') > 0), "a tolerance P with G64");
+                need(exact_ || (value.contains('P') && value.at('P') > 0), "a tolerance P with G64");
             }
         }
     }
@@ -108,33 +102,31 @@ private:
         if (code == 2) {
             ended_ = true;
         } else if (code == 6) {
-            require(value.contains('T') && targets.empty(), "a tool, before all moves");
+            need(value.contains('T') && targets.empty(), "a tool, before all moves");
         } else {
-            require((code == 62 || code == 63) && value.contains('P'), "M2, M6, M62 or M63");
+            need((code == 62 || code == 63) && value.contains('P'), "M2, M6, M62 or M63");
             output(code == 62);
         }
     }
 
     // The output changes with the beginning of the next move: where the last one ended.
     void output(bool on) {
-        require(on != arc_ && !targets.empty() && exact_end_, "an exact stop where the output changes, in turn,");
+        need(on != arc_ && !targets.empty() && exact_end_, "an exact stop where the output changes, in turn,");
         targets.back().at.kind = on ? WaypointKind::weld_start : WaypointKind::weld_end;
         arc_ = on;
     }
 
     void move(const std::map<char, double>& value) {
-        require(units_ && absolute_ && per_minute_, "G21, G90 and G94 first");
+        need(units_ && absolute_ && per_minute_, "G21, G90 and G94 first");
         for (const auto& [letter, number] : value) {
             at_[letter] = number;
         }
-        require(at_['F'] > 0, "a feed");
-        require(!targets.empty() || at_.size() >= 7, "all coordinates in the first move");
+        need(at_['F'] > 0, "a feed");
+        need(!targets.empty() || at_.size() >= 7, "all coordinates in the first move");
         Target target;
         target.at.kind = arc_ ? WaypointKind::weld : WaypointKind::air;
         target.at.p = {at_['X'], at_['Y'], at_['Z']};
-        target.at.q = Eigen::AngleAxisd(at_['C'] * kRadians, Eigen::Vector3d::UnitZ()) *
-                      Eigen::AngleAxisd(at_['B'] * kRadians, Eigen::Vector3d::UnitY()) *
-                      Eigen::AngleAxisd(at_['A'] * kRadians, Eigen::Vector3d::UnitX());
+        target.at.q = turned(at_['C'], at_['B'], at_['A']);
         target.at.speed_mm_s = at_['F'] / 60;
         check_turn();
         targets.push_back(target);
@@ -145,7 +137,7 @@ private:
     void check_turn() {
         for (const char axis : {'A', 'B', 'C'}) {
             const double now = at_[axis];
-            require(!last_.contains(axis) || std::abs(now - last_[axis]) < 180, "angles that go on without a jump");
+            need(!last_.contains(axis) || std::abs(now - last_[axis]) < 180, "angles that go on without a jump");
             last_[axis] = now;
         }
     }

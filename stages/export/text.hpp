@@ -1,11 +1,13 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "stages/export/format.hpp"
+#include "stages/geometry/pose.hpp"
 #include "stages/text.hpp"
 
 /// Private to the export stage: numbers, names and a scanner for the readers.
@@ -95,5 +97,18 @@ private:
     Lines lines_;
     std::size_t at_ = 0;
 };
+
+/// Fails at a place of a file, saying what was needed before it.
+inline void require(bool holds, const Scanner& place, const std::string& needed) {
+    if (!holds) {
+        place.fail(needed + " before this place");
+    }
+}
+
+/// Rz(z) Ry(y) Rx(x), deg.
+inline Eigen::Quaterniond turned(double z_deg, double y_deg, double x_deg) {
+    constexpr double kDegree = std::numbers::pi / 180;
+    return from_euler_zyx(z_deg * kDegree, y_deg * kDegree, x_deg * kDegree);
+}
 
 }  // namespace seampath::exporting

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "stages/export/text.hpp"
@@ -16,13 +15,6 @@ namespace {
 
 constexpr std::size_t kLongestName = 32;
 constexpr std::size_t kLongestComment = 32;
-constexpr double kRadians = std::numbers::pi / 180;
-
-void require(bool holds, const Scanner& place, const std::string& needed) {
-    if (!holds) {
-        place.fail(needed + " before this place");
-    }
-}
 
 double whole(Scanner& scan) {
     const double n = scan.number();
@@ -60,10 +52,7 @@ Pose pose(Scanner& scan) {
         n[i] = scan.number();
         require(i < 3 || std::abs(n[i]) <= 180, scan, "an angle within 180 deg");
     }
-    return {{n[0], n[1], n[2]},
-            Eigen::AngleAxisd(n[5] * kRadians, Eigen::Vector3d::UnitZ()) *
-                Eigen::AngleAxisd(n[4] * kRadians, Eigen::Vector3d::UnitY()) *
-                Eigen::AngleAxisd(n[3] * kRadians, Eigen::Vector3d::UnitX())};
+    return {{n[0], n[1], n[2]}, turned(n[5], n[4], n[3])};
 }
 
 // What the positions are in, then the positions.
