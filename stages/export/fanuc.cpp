@@ -41,7 +41,8 @@ Eigen::Vector3d rounded_angles(const Eigen::Quaterniond& q) {
     Eigen::Vector3d best = zyx;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 27; ++i) {
-        Eigen::Vector3d tried = (1000 * zyx).array().round() + Eigen::Array3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+        const Eigen::Array3i step(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+        Eigen::Vector3d tried = (1000 * zyx).array().round() + step.cast<double>();
         tried /= 1000;
         tried = (tried.array() <= -180).select(tried.array() + 360, tried.array());
         if (tried.maxCoeff() > 180) {

@@ -14,7 +14,7 @@ constexpr std::size_t kLongestName = 24;
 
 // Names are not case-sensitive.
 std::string identifier(Scanner& scan) {
-    const std::string name = lower(scan.name());
+    std::string name = lower(scan.name());
     if (name.size() > kLongestName) {
         scan.fail("a name of at most 24 characters before this place");
     }

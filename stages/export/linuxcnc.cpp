@@ -88,6 +88,7 @@ private:
     Eigen::Vector3d zyx_;
 };
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): as Format::prepare has it
 std::vector<Target> prepare(std::vector<Target> targets) {
     Divider divider;
     for (const Target& target : targets) {
