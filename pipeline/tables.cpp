@@ -224,7 +224,10 @@ std::string manifest_json(const std::vector<ProgramFile>& programs, const std::s
                              {"position_rounding_mm", program.position_rounding_mm},
                              {"max_position_error_mm", program.max_position_error_mm},
                              {"max_orientation_error_deg", program.max_orientation_error_deg},
-                             {"max_speed_error", program.max_speed_error}});
+                             {"max_speed_error", program.max_speed_error},
+                             {"max_path_error_mm", program.max_path_error_mm},
+                             {"max_path_turn_deg", program.max_path_turn_deg},
+                             {"moves", program.moves}});
         }
     }
     return Json{{"robot", robot}, {"files", std::move(files)}}.dump(4) + "\n";

@@ -6,6 +6,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_packages=(g++ cmake ninja-build ccache libeigen3-dev nlohmann-json3-dev libcli11-dev zlib1g-dev liblzf-dev
     libssl-dev libjs-three)
 test_packages=(libgtest-dev libgmock-dev liborocos-kdl-dev chromium)
+# Programs of others that our robot programs are held against. Many packages: without them their tests are skipped.
+client_packages=(linuxcnc-uspace python3-geometry-msgs python3-trajectory-msgs python3-genpy)
 check_packages=(clang clang-format clang-tidy)
 
 say() { printf '%s\n' "$*" >&2; }
@@ -45,6 +47,11 @@ install_packages() {
     # Package lists may be older than the archive: one more try with fresh ones.
     "${install[@]}" >&2 || { "${as_root[@]}" apt-get update -q >&2 && "${install[@]}" >&2; } ||
         die "setup: apt-get could not install: ${missing[*]}; its reason stands above"
+}
+
+# The same, but goes on without what can't be had.
+try_packages() {
+    (install_packages "$@") || say "setup: going on without: $*"
 }
 
 # As many compilers as there are cores, but each may need 1.2 GB.

@@ -7,14 +7,16 @@
 /// ABB RAPID. One module with a procedure per seam and a main that calls them; above 5000 lines one module per seam,
 /// since a weld is never split. Positions in mm with 3 decimals, quaternions w, x, y, z with 8 (an unnormalised one
 /// sends the robot tens of mm wrong), external axes 9E9, configuration not supervised. With seam and weld data named:
-/// ArcLStart, ArcL, ArcLEnd; without: MoveL. Tool, work object, zone, seam and weld data are referred to by name and
-/// live on the controller.
+/// ArcLStart, ArcL, ArcC, ArcLEnd; without: MoveL, MoveC. Tool, work object, zone, seam, weld and weave data are
+/// referred to by name and live on the controller.
 namespace seampath::exporting {
 namespace {
 
 constexpr std::size_t kMaxLines = 5000;      // of a module; a teach pendant's editor copes with these
 constexpr std::size_t kMaxName = 32;         // characters of an identifier
 constexpr std::size_t kMaxProgramName = 24;  // leaves room for "_seam123"
+constexpr double kRounding_mm = 0.0005;
+constexpr double kMaxCoordinate_mm = 8388.607;  // up to 2^23 thousandths the 24 bits of a num hold every third decimal
 
 const std::vector<std::string_view>& reserved() {
     static const std::vector<std::string_view> words{
@@ -32,8 +34,9 @@ const std::vector<std::string_view>& reserved_for_program() {
     static const std::vector<std::string_view> words = [] {
         std::vector<std::string_view> all = reserved();
         all.insert(all.end(),
-                   {"main", "fine", "tool0", "wobj0", "load0", "movel", "movej", "arcl", "arclstart", "arclend",
-                    "confl", "confj", "speeddata", "robtarget", "tooldata", "wobjdata", "zonedata", "user", "base"});
+                   {"main",      "fine",      "tool0",    "wobj0",    "load0",    "movel", "movej",   "arcl",
+                    "arclstart", "arclend",   "confl",    "confj",    "movec",    "arcc",  "arccend", "cirpathmode",
+                    "speeddata", "robtarget", "tooldata", "wobjdata", "zonedata", "user",  "base"});
         return all;
     }();
     return words;
@@ -50,11 +53,11 @@ std::string robtarget(const Waypoint& w) {
 }
 
 // Speeds of the plan, in order of first use; each becomes a speeddata of its own.
-std::vector<double> speeds_of(const std::vector<Waypoint>& waypoints) {
+std::vector<double> speeds_of(const std::vector<Target>& targets) {
     std::vector<double> speeds;
-    for (const Waypoint& w : waypoints) {
-        if (std::find(speeds.begin(), speeds.end(), w.speed_mm_s) == speeds.end()) {
-            speeds.push_back(w.speed_mm_s);
+    for (const Target& target : targets) {
+        if (std::find(speeds.begin(), speeds.end(), target.at.speed_mm_s) == speeds.end()) {
+            speeds.push_back(target.at.speed_mm_s);
         }
     }
     return speeds;
@@ -69,31 +72,37 @@ std::string speed_lines(const std::vector<double>& speeds) {
     return text;
 }
 
-std::string instruction(const Waypoint& w, bool first, const ExportOptions& options) {
+std::string instruction(const Target& target, const ExportOptions& options) {
+    const bool circular = target.move == Move::circular;
     if (with_arc(options)) {
-        switch (w.kind) {
+        switch (target.at.kind) {
             case WaypointKind::weld_start:
                 return "ArcLStart";
             case WaypointKind::weld:
-                return "ArcL";
+                return circular ? "ArcC" : "ArcL";
             case WaypointKind::weld_end:
-                return "ArcLEnd";
+                return circular ? "ArcCEnd" : "ArcLEnd";
             default:
                 break;
         }
     }
-    // Where the robot comes from is not known: the first move is along its axes.
-    return first ? "MoveJ" : "MoveL";
+    return target.move == Move::joint ? "MoveJ" : circular ? "MoveC" : "MoveL";
 }
 
-std::string move(const Waypoint& w, bool first, const std::vector<double>& speeds, const ExportOptions& options) {
-    const std::string name = instruction(w, first, options);
+// `via` is the point on the way of a circular move, otherwise nullptr.
+std::string move(const Target* via, const Target& target, const std::vector<double>& speeds,
+                 const ExportOptions& options) {
+    const Waypoint& w = target.at;
+    const std::string name = instruction(target, options);
     const auto speed = std::find(speeds.begin(), speeds.end(), w.speed_mm_s) - speeds.begin();
-    const std::string process =
-        name.starts_with("ArcL") ? "," + options.abb_seam_data + "," + options.abb_weld_data : std::string();
+    std::string text = "    " + name + " " + (via != nullptr ? robtarget(via->at) + "," : "") + robtarget(w) +
+                       ",speed" + std::to_string(speed);
+    if (name.starts_with("Arc")) {
+        text += "," + options.abb_seam_data + "," + options.abb_weld_data +
+                (options.abb_weave_data.empty() ? "" : "\\Weave:=" + options.abb_weave_data);
+    }
     const std::string zone = w.kind == WaypointKind::weld ? options.abb_zone : "fine";
-    return "    " + name + " " + robtarget(w) + ",speed" + std::to_string(speed) + process + "," + zone + "," +
-           options.abb_tool + "\\WObj:=" + options.abb_work_object + ";\n";
+    return text + "," + zone + "," + options.abb_tool + "\\WObj:=" + options.abb_work_object + ";\n";
 }
 
 struct Procedure {
@@ -101,16 +110,22 @@ struct Procedure {
     std::string text;
 };
 
-std::vector<Procedure> procedures(const Plan& in_base, const std::vector<double>& speeds,
+std::vector<Procedure> procedures(const std::vector<Target>& targets, const std::vector<double>& speeds,
                                   const ExportOptions& options) {
+    const bool arcs = std::any_of(targets.begin(), targets.end(), [](const Target& t) { return t.move == Move::via; });
     std::vector<Procedure> result;
-    for (std::size_t k = 0; k < in_base.waypoints.size(); ++k) {
-        const Waypoint& w = in_base.waypoints[k];
-        if (k == 0 || w.seam != in_base.waypoints[k - 1].seam) {
-            const std::string name = options.program_name + "_seam" + std::to_string(w.seam);
-            result.push_back({name, "  PROC " + name + "()\n    ConfL\\Off;\n    ConfJ\\Off;\n"});
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+        const int seam = targets[k].at.seam;
+        if (k == 0 || seam != targets[k - 1].at.seam) {
+            const std::string name = options.program_name + "_seam" + std::to_string(seam);
+            // On arcs the orientation goes from start to end in the work object, as on lines.
+            result.push_back({name, "  PROC " + name + "()\n    ConfL\\Off;\n    ConfJ\\Off;\n" +
+                                        (arcs ? "    CirPathMode\\ObjectFrame;\n" : "")});
         }
-        result.back().text += move(w, k == 0, speeds, options);
+        if (targets[k].move != Move::via) {
+            const bool circular = targets[k].move == Move::circular;
+            result.back().text += move(circular ? &targets[k - 1] : nullptr, targets[k], speeds, options);
+        }
     }
     for (Procedure& procedure : result) {
         procedure.text += "  ENDPROC\n";
@@ -118,9 +133,9 @@ std::vector<Procedure> procedures(const Plan& in_base, const std::vector<double>
     return result;
 }
 
-std::string head(const Plan& in_base, const ExportOptions& options) {
+std::string head(const Program& program, const ExportOptions& options) {
     std::string text;
-    for (const std::string& line : preamble(in_base, options, kAbbRounding_mm)) {
+    for (const std::string& line : preamble(program, options, kRounding_mm)) {
         text += "  ! " + line + "\n";
     }
     text += "  ! Units: mm, mm/s; quaternions w, x, y, z. Positions are those of " + options.abb_tool + " in " +
@@ -148,37 +163,41 @@ std::size_t lines(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-}  // namespace
-
-Told abb_told(const ExportOptions& options) {
+Told told(const ExportOptions& options) {
     return with_arc(options) ? Told::welding : Told::motion;
 }
 
-std::vector<std::string> abb_problems(const ExportOptions& options) {
-    std::vector<std::string> problems =
+std::vector<std::string> problems(const ExportOptions& options) {
+    std::vector<std::string> found =
         name_problems("program_name", options.program_name, kMaxProgramName, reserved_for_program(), "RAPID");
     const auto check = [&](std::string_view key, const std::string& value) {
-        const auto found = name_problems(key, value, kMaxName, reserved(), "RAPID");
-        problems.insert(problems.end(), found.begin(), found.end());
+        append(found, name_problems(key, value, kMaxName, reserved(), "RAPID"));
     };
     check("abb_tool", options.abb_tool);
     check("abb_work_object", options.abb_work_object);
     check("abb_zone", options.abb_zone);
     if (options.abb_seam_data.empty() != options.abb_weld_data.empty()) {
-        problems.push_back("abb_seam_data: \"" + options.abb_seam_data + "\" and abb_weld_data \"" +
-                           options.abb_weld_data + "\"; both were needed for arc welding, or neither");
+        found.push_back("abb_seam_data: \"" + options.abb_seam_data + "\" and abb_weld_data \"" +
+                        options.abb_weld_data + "\"; both were needed for arc welding, or neither");
     } else if (with_arc(options)) {
         check("abb_seam_data", options.abb_seam_data);
         check("abb_weld_data", options.abb_weld_data);
     }
-    return problems;
+    if (!options.abb_weave_data.empty()) {
+        check("abb_weave_data", options.abb_weave_data);
+        if (!with_arc(options)) {
+            found.push_back("abb_weave_data: \"" + options.abb_weave_data +
+                            "\" stands alone; abb_seam_data and abb_weld_data were needed with it");
+        }
+    }
+    return found;
 }
 
-std::vector<TextFile> write_abb(const Plan& in_base, const ExportOptions& options) {
-    const std::vector<double> speeds = speeds_of(in_base.waypoints);
-    const std::vector<Procedure> seams = procedures(in_base, speeds, options);
+std::vector<TextFile> write(const Program& program, const ExportOptions& options) {
+    const std::vector<double> speeds = speeds_of(program.targets);
+    const std::vector<Procedure> seams = procedures(program.targets, speeds, options);
     const std::string& name = options.program_name;
-    const std::string data = head(in_base, options) + speed_lines(speeds);
+    const std::string data = head(program, options) + speed_lines(speeds);
     std::string body = data + main_procedure(seams);
     for (const Procedure& seam : seams) {
         body += seam.text;
@@ -188,7 +207,7 @@ std::vector<TextFile> write_abb(const Plan& in_base, const ExportOptions& option
         return {{name + ".mod", whole}};
     }
     std::vector<TextFile> files{{name + ".mod", module(name, "  ! Needs the modules of all seams loaded beside it.\n" +
-                                                                 head(in_base, options) + main_procedure(seams))}};
+                                                                 head(program, options) + main_procedure(seams))}};
     for (std::size_t i = 0; i < seams.size(); ++i) {
         const std::string part = name + "_mod" + std::to_string(i);
         files.push_back({part + ".mod", module(part, data + seams[i].text)});
@@ -201,5 +220,10 @@ std::vector<TextFile> write_abb(const Plan& in_base, const ExportOptions& option
     }
     return files;
 }
+
+}  // namespace
+
+constinit const Format kAbb{"abb", kRounding_mm, kMaxCoordinate_mm, 0,     true,    true,
+                            true,  told,         problems,          write, read_abb};
 
 }  // namespace seampath::exporting

@@ -129,15 +129,9 @@ public:
         call("main", start, 0);
         require(!welding_, start, "ArcLEnd at the end of the program");
     }
-    std::vector<Waypoint> waypoints;
+    std::vector<Target> targets;
 
 private:
-    static void require(bool holds, const Scanner& place, const std::string& needed) {
-        if (!holds) {
-            place.fail(needed + " before this place");
-        }
-    }
-
     void call(const std::string& name, const Scanner& place, int depth) {
         require(depth < 10, place, "a call that is not of itself");
         for (const Module& m : modules_) {
@@ -155,14 +149,18 @@ private:
         if (i.name == "confl" || i.name == "confj") {
             require(i.options.contains("off"), i.place, "\\Off");
             (i.name == "confl" ? linear_free_ : joint_free_) = true;
-        } else if (i.name == "movel" || i.name == "movej") {
+        } else if (i.name == "cirpathmode") {
+            require(i.options.contains("objectframe"), i.place, "\\ObjectFrame");
+            object_frame_ = true;
+        } else if (i.name == "movel" || i.name == "movej" || i.name == "movec") {
             require(!welding_, i.place, "ArcLEnd first and not a move");
-            move(i, m, 4, WaypointKind::air);
-        } else if (i.name == "arclstart" || i.name == "arcl" || i.name == "arclend") {
-            const bool start = i.name == "arclstart", end = i.name == "arclend";
+            move(i, m, 2, WaypointKind::air);
+        } else if (i.name == "arclstart" || i.name == "arcl" || i.name == "arclend" || i.name == "arcc" ||
+                   i.name == "arccend") {
+            const bool start = i.name.ends_with("start"), end = i.name.ends_with("end");
             require(welding_ != start, i.place, "ArcLStart first, and once");
-            move(i, m, 6, start ? WaypointKind::weld_start : end ? WaypointKind::weld_end : WaypointKind::weld);
-            require(!(start || end) || i.arguments[4].name == "fine", i.place,
+            move(i, m, 4, start ? WaypointKind::weld_start : end ? WaypointKind::weld_end : WaypointKind::weld);
+            require(!(start || end) || i.arguments[i.arguments.size() - 2].name == "fine", i.place,
                     "zone fine where the arc starts and ends");
             welding_ = !end;
         } else {
@@ -171,20 +169,32 @@ private:
         }
     }
 
-    // To-point and speed are the first two arguments, zone and tool the last two.
-    void move(const Instruction& i, const Module& m, std::size_t arguments, WaypointKind kind) {
+    // Of a circular move the point on the way, then to-point and speed; then `names` of data, the last two zone and
+    // tool.
+    void move(const Instruction& i, const Module& m, std::size_t names, WaypointKind kind) {
+        const bool circular = i.name.starts_with("movec") || i.name.starts_with("arcc");
+        const std::size_t points = circular ? 2 : 1, arguments = points + 1 + names;
         require(i.arguments.size() == arguments, i.place, std::to_string(arguments) + " arguments");
         require(i.options.contains("wobj"), i.place, "\\WObj");
+        for (const auto& [option, given] : i.options) {
+            require(option == "wobj" || (option == "weave" && names == 4), i.place, "no option but \\WObj and \\Weave");
+            require(!given.name.empty(), i.place, "the name of data behind \\" + option);
+        }
         require(linear_free_ && joint_free_, i.place, "ConfL\\Off and ConfJ\\Off, since confdata is zero,");
-        for (std::size_t k = 2; k < arguments; ++k) {
+        require(!circular || (object_frame_ && !targets.empty()), i.place, "CirPathMode and a point to start from");
+        for (std::size_t k = points + 1; k < arguments; ++k) {
             require(!i.arguments[k].name.empty(), i.place, "the name of seam, weld, zone or tool data");
         }
-        Waypoint w;
-        w.kind = kind;
-        set_pose(w, resolve(i.arguments[0], m, i.place), i.place);
-        const std::vector<double> speed = numbers(resolve(i.arguments[1], m, i.place), 4, i.place);
-        w.speed_mm_s = speed[0];
-        waypoints.push_back(w);
+        const double speed = numbers(resolve(i.arguments[points], m, i.place), 4, i.place)[0];
+        for (std::size_t k = 0; k < points; ++k) {
+            const bool via = k + 1 < points;
+            Target target;
+            target.move = via ? Move::via : circular ? Move::circular : i.name == "movej" ? Move::joint : Move::linear;
+            target.at.kind = via && kind == WaypointKind::weld_end ? WaypointKind::weld : kind;
+            target.at.speed_mm_s = speed;
+            set_pose(target.at, resolve(i.arguments[k], m, i.place), i.place);
+            targets.push_back(target);
+        }
     }
 
     static const Value& resolve(const Value& given, const Module& m, const Scanner& place) {
@@ -225,12 +235,13 @@ private:
     bool welding_ = false;
     bool linear_free_ = false;
     bool joint_free_ = false;
+    bool object_frame_ = false;
 };
 
 }  // namespace
 
-std::vector<Waypoint> read_abb(const std::vector<TextFile>& files) {
-    return Controller(files).waypoints;
+std::vector<Target> read_abb(const std::vector<TextFile>& files) {
+    return Controller(files).targets;
 }
 
 }  // namespace seampath::exporting

@@ -77,16 +77,14 @@ Waypoint waypoint(const Row& row) {
     return w;
 }
 
-}  // namespace
-
-std::vector<TextFile> write_csv(const Plan& in_base, const ExportOptions& options) {
+std::vector<TextFile> write(const Program& program, const ExportOptions& options) {
     std::string text;
-    for (const std::string& line : preamble(in_base, options, 0)) {
+    for (const std::string& line : preamble(program, options, 0)) {
         text += "# " + line + "\n";
     }
     text += "# Units: mm, mm/s, s. Quaternion order: qw,qx,qy,qz (base_from_tool, scalar first).\n";
     text += "seam,index,kind,station_mm,x,y,z,qw,qx,qy,qz,speed_mm_s,time_s,sigma_mm\n";
-    for (const Waypoint& w : in_base.waypoints) {
+    for (const auto& [w, move, k] : program.targets) {
         text += std::to_string(w.seam) + "," + std::to_string(w.index) + "," + std::string(name(w.kind)) + "," +
                 list({w.station_mm, w.p.x(), w.p.y(), w.p.z(), w.q.w(), w.q.x(), w.q.y(), w.q.z(), w.speed_mm_s,
                       w.time_s, w.sigma_mm},
@@ -96,8 +94,8 @@ std::vector<TextFile> write_csv(const Plan& in_base, const ExportOptions& option
     return {{"waypoints.csv", text}};
 }
 
-std::vector<Waypoint> read_csv(const std::vector<TextFile>& files) {
-    std::vector<Waypoint> waypoints;
+std::vector<Target> read(const std::vector<TextFile>& files) {
+    std::vector<Target> targets;
     std::map<std::string_view, std::size_t> column;
     std::size_t number = 0;
     for (const std::string_view line : split(files.at(0).text, '\n')) {
@@ -112,9 +110,13 @@ std::vector<Waypoint> read_csv(const std::vector<TextFile>& files) {
             }
             continue;
         }
-        waypoints.push_back(waypoint(Row(column, cells, number)));
+        targets.push_back({waypoint(Row(column, cells, number))});
     }
-    return waypoints;
+    return targets;
 }
+
+}  // namespace
+
+constinit const Format kCsv{"csv", 0, kAnywhere, 0, false, false, true, tells_everything, no_problems, write, read};
 
 }  // namespace seampath::exporting

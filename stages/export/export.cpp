@@ -2,46 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <string>
 
 #include "stages/error.hpp"
 #include "stages/export/format.hpp"
 #include "stages/export/text.hpp"
-#include "stages/geometry/pose.hpp"
 
 namespace seampath {
 namespace exporting {
 namespace {
 
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-constexpr double kMaxOrientationError_deg = 0.001;
-constexpr double kMaxSpeedError = 0.005;
-
-Told tells_everything(const ExportOptions&) {
-    return Told::everything;
-}
-std::vector<std::string> no_problems(const ExportOptions&) {
-    return {};
-}
-
-// RAPID's num has 24 bits: up to 2^23 thousandths of a mm it holds every third decimal. No UR reaches 10 m; its speeds
-// have a micron a second.
-constexpr std::array<Format, kRobotNames.size()> kFormats{{
-    {"csv", 0, kAnywhere, 0, tells_everything, no_problems, write_csv, read_csv},
-    {"json", 0, kAnywhere, 0, tells_everything, no_problems, write_json, read_json},
-    {"abb", kAbbRounding_mm, 8388.607, 0, abb_told, abb_problems, write_abb, read_abb},
-    {"ur", kUrRounding_mm, 10000, 0.1, ur_told, ur_problems, write_ur, read_ur},
-}};
-static_assert([] {
-    for (std::size_t i = 0; i < kFormats.size(); ++i) {
-        if (kFormats[i].name != kRobotNames[i]) {
-            return false;
-        }
-    }
-    return true;
-}());
+constexpr std::array<const Format*, kRobotNames.size()> kFormats{&kCsv, &kJson,    &kAbb,      &kKuka, &kFanuc,
+                                                                 &kUr,  &kYaskawa, &kLinuxcnc, &kRos,  &kNoether};
 
 std::string trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
@@ -55,8 +27,8 @@ struct Robots {
 
 Robots robots_of(const ExportOptions& options) {
     std::string known;
-    for (const Format& f : kFormats) {
-        known += (known.empty() ? "" : ", ") + std::string(f.name);
+    for (const std::string_view name : kRobotNames) {
+        known += (known.empty() ? "" : ", ") + std::string(name);
     }
     Robots result;
     std::string_view left = options.robots;
@@ -66,13 +38,13 @@ Robots robots_of(const ExportOptions& options) {
         more = comma != std::string_view::npos;
         left.remove_prefix(more ? comma + 1 : left.size());
         const auto found =
-            std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.name == wanted; });
+            std::find_if(kFormats.begin(), kFormats.end(), [&](const Format* f) { return f->name == wanted; });
         if (found == kFormats.end()) {
             result.problems.push_back("robots: \"" + wanted + "\" is no known robot; one of " + known + " was needed");
-        } else if (std::find(result.formats.begin(), result.formats.end(), &*found) != result.formats.end()) {
+        } else if (std::find(result.formats.begin(), result.formats.end(), *found) != result.formats.end()) {
             result.problems.push_back("robots: \"" + wanted + "\" stands twice; each robot was needed once");
         } else {
-            result.formats.push_back(&*found);
+            result.formats.push_back(*found);
         }
     }
     return result;
@@ -108,10 +80,6 @@ Plan in_base(const Plan& plan, const std::vector<double>& b) {
     return result;
 }
 
-std::string place(const Waypoint& w) {
-    return "waypoint " + std::to_string(w.index) + " of seam " + std::to_string(w.seam);
-}
-
 // Refuses what the format can't hold.
 void check_range(const Format& f, const std::vector<Waypoint>& waypoints) {
     for (const Waypoint& w : waypoints) {
@@ -128,98 +96,29 @@ void check_range(const Format& f, const std::vector<Waypoint>& waypoints) {
     }
 }
 
-void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
-    to.insert(to.end(), more.begin(), more.end());
-}
-
-bool is_weld(WaypointKind kind) {
-    return kind == WaypointKind::weld_start || kind == WaypointKind::weld || kind == WaypointKind::weld_end;
-}
-
-// The kind that a reader of such a format must find.
-WaypointKind told_kind(Told told, WaypointKind kind) {
-    return told == Told::everything || (told == Told::welding && is_weld(kind)) ? kind : WaypointKind::air;
-}
-
-bool same_fields(const Waypoint& a, const Waypoint& b) {
-    return a.seam == b.seam && a.index == b.index && a.station_mm == b.station_mm && a.time_s == b.time_s &&
-           a.sigma_mm == b.sigma_mm;
-}
-
 }  // namespace
 
 const Format& format(std::size_t robot) {
-    return kFormats.at(robot);
+    return *kFormats.at(robot);
 }
 
-ReadBack compare(const Format& f, Told told, const std::vector<Waypoint>& plan, const std::vector<Waypoint>& read) {
-    const auto fail = [&](const std::string& what) {
-        throw InternalError("export: " + std::string(f.name) + ": the program does not say what was planned: " + what);
-    };
-    if (plan.size() != read.size()) {
-        fail(std::to_string(read.size()) + " moves instead of " + std::to_string(plan.size()));
-    }
-    ReadBack worst;
-    for (std::size_t k = 0; k < plan.size(); ++k) {
-        const Waypoint &a = plan[k], &b = read[k];
-        const double angle = rotation_angle(a.q, b.q) * 180 / std::numbers::pi;
-        const double speed = std::abs(b.speed_mm_s / a.speed_mm_s - 1);
-        // The rounding of doubles themselves is far below a nanometre.
-        if (!((a.p - b.p).array().abs() <= f.position_rounding_mm + 1e-9).all()) {
-            fail(place(a) + " is off by " + plain((a.p - b.p).norm()) + " mm");
-        }
-        if (!(angle <= kMaxOrientationError_deg)) {
-            fail(place(a) + " is turned by " + plain(angle) + " deg");
-        }
-        if (!(speed <= kMaxSpeedError)) {
-            fail(place(a) + " has a speed of " + plain(b.speed_mm_s) + " mm/s");
-        }
-        if (b.kind != told_kind(told, a.kind)) {
-            fail(place(a) + " is " + std::string(name(b.kind)));
-        }
-        if (told == Told::everything && !same_fields(a, b)) {
-            fail(place(a) + " has another number, station, time or sigma");
-        }
-        worst.max_position_error_mm = std::max(worst.max_position_error_mm, (a.p - b.p).norm());
-        worst.max_orientation_error_deg = std::max(worst.max_orientation_error_deg, angle);
-        worst.max_speed_error = std::max(worst.max_speed_error, speed);
-    }
-    return worst;
+Told tells_everything(const ExportOptions&) {
+    return Told::everything;
+}
+
+std::vector<std::string> no_problems(const ExportOptions&) {
+    return {};
 }
 
 }  // namespace exporting
 
 using namespace exporting;
 
-Fields describe(ExportOptions& o) {
-    return {
-        {"robots", &o.robots, "robots to write programs for, comma-separated: csv, json, abb, ur"},
-        {"program_name", &o.program_name, "name of the program on the controller; a letter, then letters, digits, _"},
-        {"even_if_out_of_tolerance", &o.even_if_out_of_tolerance,
-         "write programs for seams that failed validation too"},
-        {"abb_tool", &o.abb_tool, "ABB: name of the tooldata on the controller"},
-        {"abb_work_object", &o.abb_work_object, "ABB: name of the wobjdata that positions are in"},
-        {"abb_seam_data", &o.abb_seam_data, "ABB: name of the seamdata for ArcL; empty, with abb_weld_data: MoveL"},
-        {"abb_weld_data", &o.abb_weld_data, "ABB: name of the welddata for ArcL; empty, with abb_seam_data: MoveL"},
-        {"abb_zone", &o.abb_zone, "ABB: name of the zonedata at weld points"},
-        {"ur_tcp", &o.ur_tcp, "UR: tool centre point in the flange: x, y, z mm, rotation vector rad", {}, 6},
-        {"ur_arc_output", &o.ur_arc_output, "UR: standard digital output that strikes the arc; none: motion only",
-         within(0, 7)},
-        {"base_from_scan",
-         &o.base_from_scan,
-         "pose of the scan frame in the base frame: x, y, z mm, qw, qx, qy, qz",
-         {},
-         7},
-    };
-}
-
 std::vector<std::string> export_problems(const ExportOptions& options) {
     Robots robots = robots_of(options);
     std::vector<std::string> problems = std::move(robots.problems);
     for (const Format* f : robots.formats) {
-        for (const std::string& problem : f->problems(options)) {
-            problems.push_back(problem);
-        }
+        append(problems, f->problems(options));
     }
     append(problems, frame_problems(options.base_from_scan));
     return problems;
@@ -240,11 +139,15 @@ std::vector<ProgramFile> export_programs(const Plan& plan, const ExportOptions& 
     std::vector<ProgramFile> programs;
     for (const Format* f : robots_of(options).formats) {
         check_range(*f, moved.waypoints);
-        const std::vector<TextFile> files = f->write(moved, options);
-        const ReadBack found = compare(*f, f->told(options), moved.waypoints, f->read(files));
+        const Program program = program_of(moved, *f, options);
+        const std::vector<TextFile> files = f->write(program, options);
+        const std::vector<Target> read = f->read(files);
+        const ReadBack found = compare(*f, f->told(options), program.targets, read);
+        const PathCheck path = check_path(program, *f, read, options);
         for (const TextFile& file : files) {
             programs.push_back({std::string(f->name), file.name, file.text, f->position_rounding_mm,
-                                found.max_position_error_mm, found.max_orientation_error_deg, found.max_speed_error});
+                                found.max_position_error_mm, found.max_orientation_error_deg, found.max_speed_error,
+                                path.max_error_mm, path.max_turn_deg, program.targets.size()});
         }
     }
     return programs;

@@ -104,9 +104,8 @@ private:
     const Scanner& scan_;
 };
 
-}  // namespace
-
-std::vector<TextFile> write_json(const Plan& in_base, const ExportOptions& options) {
+std::vector<TextFile> write(const Program& program, const ExportOptions& options) {
+    const Plan& in_base = program.plan;
     std::string text = "{\n";
     text += pair("format", quote("seampath waypoints")) + ",\n";
     text += pair("frame", quote("robot base")) + ",\n";
@@ -119,13 +118,13 @@ std::vector<TextFile> write_json(const Plan& in_base, const ExportOptions& optio
     text += pair("max_chord_error_mm", in_base.max_chord_error_mm) + ",\n";
     text += pair("duration_s", in_base.duration_s) + ",\n";
     text += pair("waypoints", "[\n");
-    for (const Waypoint& w : in_base.waypoints) {
-        text += object(w) + (&w == &in_base.waypoints.back() ? "\n" : ",\n");
+    for (const Target& target : program.targets) {
+        text += object(target.at) + (&target == &program.targets.back() ? "\n" : ",\n");
     }
     return {{"waypoints.json", text + "]\n}\n"}};
 }
 
-std::vector<Waypoint> read_json(const std::vector<TextFile>& files) {
+std::vector<Target> read(const std::vector<TextFile>& files) {
     Scanner scan(files.at(0), '\0');
     const Value root = value(scan);
     if (!scan.done()) {
@@ -136,11 +135,15 @@ std::vector<Waypoint> read_json(const std::vector<TextFile>& files) {
     reader.require(units, "length", "mm");
     reader.require(units, "speed", "mm/s");
     reader.require(units, "time", "s");
-    std::vector<Waypoint> waypoints;
+    std::vector<Target> targets;
     for (const Value& object : reader.member(root, "waypoints").items) {
-        waypoints.push_back(reader.waypoint(object));
+        targets.push_back({reader.waypoint(object)});
     }
-    return waypoints;
+    return targets;
 }
+
+}  // namespace
+
+constinit const Format kJson{"json", 0, kAnywhere, 0, false, false, true, tells_everything, no_problems, write, read};
 
 }  // namespace seampath::exporting

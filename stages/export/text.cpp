@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "stages/error.hpp"
 
@@ -26,9 +27,18 @@ bool is_part_of_name(char c) {
 
 }  // namespace
 
+std::string place(const Waypoint& waypoint) {
+    return "waypoint " + std::to_string(waypoint.index) + " of seam " + std::to_string(waypoint.seam);
+}
+
 std::string plain(double value) {
     std::array<char, kLongestNumber> text;
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr};
+}
+
+std::string degrees(double rad, int decimals) {
+    const std::string text = fixed(180 / std::numbers::pi * rad, decimals);
+    return text == fixed(-180, decimals) ? text.substr(1) : text;
 }
 
 std::string list(const std::vector<double>& values, std::string_view separator) {
@@ -68,15 +78,86 @@ std::vector<std::string> name_problems(std::string_view key, const std::string& 
     return {};
 }
 
-std::vector<std::string> preamble(const Plan& in_base, const ExportOptions& options, double rounding_mm) {
+std::vector<std::string> number_problems(std::string_view key, const std::optional<double>& value, double low,
+                                         double high, std::string_view what) {
+    if (!value || (*value >= low && *value <= high && *value == std::floor(*value))) {
+        return {};
+    }
+    return {std::string(key) + ": " + plain(*value) + " is no " + std::string(what) + "; a whole number from " +
+            plain(low) + " to " + plain(high) + " was needed"};
+}
+
+std::vector<std::string> needed_number_problems(std::string_view key, const std::optional<double>& value, double low,
+                                                double high, std::string_view what) {
+    if (!value) {
+        return {std::string(key) + ": no " + std::string(what) + " was given; a whole number from " + plain(low) +
+                " to " + plain(high) + " was needed"};
+    }
+    return number_problems(key, value, low, high, what);
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+std::string crlf(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        result += c == '\n' ? "\r\n" : std::string(1, c);
+    }
+    return result;
+}
+
+void require_crlf_ascii(const TextFile& file) {
+    const std::string& text = file.text;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        const bool paired = c == '\n'   ? i > 0 && text[i - 1] == '\r'
+                            : c == '\r' ? i + 1 < text.size() && text[i + 1] == '\n'
+                                        : c == '\t' || (c >= ' ' && c <= '~');
+        if (!paired) {
+            throw InternalError("export: " + file.name + ":" + std::to_string(line_count(text.substr(0, i)) + 1) +
+                                ": ASCII and line ends of carriage return and line feed were needed");
+        }
+    }
+}
+
+std::size_t line_count(std::string_view text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::vector<std::string> wrapped(const std::vector<std::string>& lines, std::size_t width) {
+    std::vector<std::string> result;
+    for (std::string_view left : lines) {
+        while (left.size() > width) {
+            const auto blank = left.rfind(' ', width);
+            const std::size_t end = blank == std::string_view::npos || blank == 0 ? width : blank;
+            result.emplace_back(left.substr(0, end));
+            left.remove_prefix(end == blank ? end + 1 : end);
+        }
+        result.emplace_back(left);
+    }
+    return result;
+}
+
+std::vector<std::string> preamble(const Program& program, const ExportOptions& options, double rounding_mm) {
     const auto& b = options.base_from_scan;
-    std::vector<std::string> lines{"Written by Seampath.",
-                                   "Frame: robot base; base_from_scan is " + list({b[0], b[1], b[2]}, " ") +
-                                       " mm, quaternion w x y z " + list({b[3], b[4], b[5], b[6]}, " ") + ".",
-                                   "Tool: +Z along the torch into the joint, +X along travel.",
-                                   "Straight moves stay within " +
-                                       fixed(std::ceil(in_base.max_chord_error_mm * 1e4) / 1e4, 4) +
-                                       " mm of the seam."};
+    std::string sigma;
+    if (options.base_from_scan_sigma_mm) {
+        sigma += " " + plain(*options.base_from_scan_sigma_mm) + " mm";
+    }
+    if (options.base_from_scan_sigma_deg) {
+        sigma += (sigma.empty() ? " " : ", ") + plain(*options.base_from_scan_sigma_deg) + " deg";
+    }
+    std::vector<std::string> lines{
+        "Written by Seampath.",
+        "Frame: robot base; base_from_scan is " + list({b[0], b[1], b[2]}, " ") + " mm, quaternion w x y z " +
+            list({b[3], b[4], b[5], b[6]}, " ") + ".",
+        "Tool: +Z along the torch into the joint, +X along travel.",
+        "Moves stay within " + fixed(std::ceil(program.deviation_mm * 1e4) / 1e4, 4) + " mm of the seam."};
+    if (!sigma.empty()) {
+        lines.insert(lines.begin() + 2, "1-sigma of base_from_scan:" + sigma + ".");
+    }
     if (rounding_mm > 0) {
         lines.push_back("Positions are rounded by up to " + plain(rounding_mm) + " mm.");
     }
@@ -88,7 +169,8 @@ void Scanner::skip() {
     while (at_ < text.size()) {
         if (text[at_] == comment_ && comment_ != 0) {
             at_ = std::min(text.find('\n', at_), text.size());
-        } else if (text[at_] == ' ' || text[at_] == '\t' || text[at_] == '\r' || text[at_] == '\n') {
+        } else if (text[at_] == ' ' || text[at_] == '\t' || text[at_] == '\r' ||
+                   (text[at_] == '\n' && lines_ == Lines::skipped)) {
             ++at_;
         } else {
             return;
@@ -99,6 +181,28 @@ void Scanner::skip() {
 bool Scanner::done() {
     skip();
     return at_ == file_->text.size();
+}
+
+bool Scanner::at_line_end() {
+    return done() || rest().front() == '\n';
+}
+
+void Scanner::end_line() {
+    if (!at_line_end()) {
+        fail("the end of the line");
+    }
+    while (!done() && rest().front() == '\n') {
+        ++at_;
+    }
+}
+
+std::string Scanner::to_line_end() {
+    std::string line(rest().substr(0, rest().find('\n')));
+    at_ += line.size();
+    if (!line.empty() && line.back() == '\r') {
+        line.pop_back();
+    }
+    return line;
 }
 
 bool Scanner::accept(char token) {
@@ -144,6 +248,25 @@ double Scanner::number() {
     const std::string_view left = rest();
     double value = 0;
     const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) {
+        fail("a number");
+    }
+    at_ += static_cast<std::size_t>(end - left.data());
+    return value;
+}
+
+char Scanner::letter() {
+    if (done() || rest().front() < 'A' || rest().front() > 'Z') {
+        fail("a letter");
+    }
+    return file_->text[at_++];
+}
+
+double Scanner::decimal() {
+    skip();
+    const std::string_view left = rest();
+    double value = 0;
+    const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), value, std::chars_format::fixed);
     if (error != std::errc() || !std::isfinite(value)) {
         fail("a number");
     }

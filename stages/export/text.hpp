@@ -1,17 +1,29 @@
 #pragma once
 
+#include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "stages/export/format.hpp"
+#include "stages/geometry/pose.hpp"
 #include "stages/text.hpp"
 
 /// Private to the export stage: numbers, names and a scanner for the readers.
 namespace seampath::exporting {
 
+/// Largest coordinate of a format that holds any, mm.
+inline constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+/// "waypoint 3 of seam 0"
+std::string place(const Waypoint& waypoint);
+
 /// Shortest form that reads back exactly and has no exponent, for robot languages and messages.
 std::string plain(double value);
+
+/// An angle in rad as degrees with so many decimals, above -180 where it is written.
+std::string degrees(double rad, int decimals);
 
 /// "a,b,c" of shortest numbers.
 std::string list(const std::vector<double>& values, std::string_view separator);
@@ -26,16 +38,44 @@ bool is_identifier(std::string_view text);
 std::vector<std::string> name_problems(std::string_view key, const std::string& value, std::size_t longest,
                                        const std::vector<std::string_view>& reserved, std::string_view language);
 
-/// Lines that say frame, tool, units and tolerance at the head of a program.
-std::vector<std::string> preamble(const Plan& in_base, const ExportOptions& options, double rounding_mm);
+/// "key: 1.5 is no ...": why a number of the config is none of `what`, whole and from low to high; nothing when it is,
+/// or was not given.
+std::vector<std::string> number_problems(std::string_view key, const std::optional<double>& value, double low,
+                                         double high, std::string_view what);
 
-/// Walks over the tokens of a file, which must outlive it; blanks, line ends and comments lie between them. All but
-/// accept() and done() throw InternalError naming file and line when the text is not what they need.
+/// The same where the language can't do without it.
+std::vector<std::string> needed_number_problems(std::string_view key, const std::optional<double>& value, double low,
+                                                double high, std::string_view what);
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more);
+
+/// Every line end as carriage return and line feed.
+std::string crlf(const std::string& text);
+
+/// Throws InternalError where a line end is another, or a byte is no printable ASCII character or tab.
+void require_crlf_ascii(const TextFile& file);
+
+std::size_t line_count(std::string_view text);
+
+/// Lines of at most `width` characters, broken between words.
+std::vector<std::string> wrapped(const std::vector<std::string>& lines, std::size_t width);
+
+/// Lines that say frame, tool, units and tolerance at the head of a program.
+std::vector<std::string> preamble(const Program& program, const ExportOptions& options, double rounding_mm);
+
+/// Walks over the tokens of a file, which must outlive it; blanks, line ends and comments lie between them. In a
+/// language whose statements end with their line, `Lines::kept`, line ends are tokens. All but accept() and done()
+/// throw InternalError naming file and line when the text is not what they need.
 class Scanner {
 public:
-    Scanner(const TextFile& file, char comment) : file_(&file), comment_(comment) {}
+    enum class Lines { skipped, kept };
+    Scanner(const TextFile& file, char comment, Lines lines = Lines::skipped)
+        : file_(&file), comment_(comment), lines_(lines) {}
 
     bool done();
+    bool at_line_end();
+    void end_line();            ///< at least one line end
+    std::string to_line_end();  ///< what is left of the line, comments and all
     bool accept(char token);
     bool accept(std::string_view token);  ///< punctuation
     void expect(char token);
@@ -43,6 +83,8 @@ public:
     bool at_quote();
     std::string name();
     double number();
+    char letter();         ///< one, upper case
+    double decimal();      ///< a number without an exponent
     std::string quoted();  ///< "..." without escapes
     [[noreturn]] void fail(const std::string& needed) const;
 
@@ -52,7 +94,21 @@ private:
 
     const TextFile* file_;
     char comment_;
+    Lines lines_;
     std::size_t at_ = 0;
 };
+
+/// Fails at a place of a file, saying what was needed before it.
+inline void require(bool holds, const Scanner& place, const std::string& needed) {
+    if (!holds) {
+        place.fail(needed + " before this place");
+    }
+}
+
+/// Rz(z) Ry(y) Rx(x), deg.
+inline Eigen::Quaterniond turned(double z_deg, double y_deg, double x_deg) {
+    constexpr double kDegree = std::numbers::pi / 180;
+    return from_euler_zyx(z_deg * kDegree, y_deg * kDegree, x_deg * kDegree);
+}
 
 }  // namespace seampath::exporting

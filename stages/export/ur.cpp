@@ -8,11 +8,15 @@
 #include "stages/geometry/pose.hpp"
 
 /// Universal Robots URScript: one function of moves in the base frame. Metres and rotation vectors in rad with 6
-/// decimals, m/s with 6. Weld points are movep (constant tool speed) with blends that can't overlap; all else is movel.
+/// decimals, m/s with 6. Weld points are movep (constant tool speed) and movec, with blends that can't overlap; all
+/// else is movel.
 namespace seampath::exporting {
 namespace {
 
 constexpr std::size_t kMaxName = 64;
+constexpr double kRounding_mm = 0.0005;
+constexpr double kMaxCoordinate_mm = 10000;  // no robot of theirs reaches that far
+constexpr double kMinSpeed_mm_s = 0.1;       // speeds have a micron a second
 
 // URScript's own default, m/s^2.
 constexpr double kAcceleration = 1.2;
@@ -63,15 +67,18 @@ double blend_mm(const Waypoint& before, const Waypoint& w, const Waypoint& after
     return blend < kMinBlend_mm ? 0 : blend;
 }
 
-std::string move(const std::vector<Waypoint>& all, std::size_t k) {
-    const Waypoint& w = all[k];
+std::string move(const std::vector<Target>& all, std::size_t k) {
+    const Waypoint& w = all[k].at;
+    const bool circular = all[k].move == Move::circular;
     const bool welding = w.kind == WaypointKind::weld || w.kind == WaypointKind::weld_end;
-    std::string text = std::string("  ") + (welding ? "movep(" : "movel(") + pose(w.p, rotation_vector(w.q)) +
-                       ", a=" + plain(kAcceleration) + ", v=" + fixed(w.speed_mm_s / 1000, 6);
+    std::string text = circular  ? "  movec(" + pose(all[k - 1].at.p, rotation_vector(all[k - 1].at.q)) + ", "
+                       : welding ? "  movep("
+                                 : "  movel(";
+    text += pose(w.p, rotation_vector(w.q)) + ", a=" + plain(kAcceleration) + ", v=" + fixed(w.speed_mm_s / 1000, 6);
     if (w.kind == WaypointKind::weld) {
-        text += ", r=" + fixed(blend_mm(all[k - 1], w, all[k + 1]) / 1000, 6);
+        text += ", r=" + fixed(blend_mm(all[k - 1].at, w, all[k + 1].at) / 1000, 6);
     }
-    return text + ")\n";
+    return text + (circular ? ", mode=0)\n" : ")\n");
 }
 
 std::string arc(const ExportOptions& options, bool on) {
@@ -81,31 +88,25 @@ std::string arc(const ExportOptions& options, bool on) {
     return "  set_standard_digital_out(" + plain(*options.ur_arc_output) + ", " + (on ? "True" : "False") + ")\n";
 }
 
-}  // namespace
-
-Told ur_told(const ExportOptions& options) {
+Told told(const ExportOptions& options) {
     return options.ur_arc_output ? Told::welding : Told::motion;
 }
 
-std::vector<std::string> ur_problems(const ExportOptions& options) {
-    std::vector<std::string> problems =
+std::vector<std::string> problems(const ExportOptions& options) {
+    std::vector<std::string> found =
         name_problems("program_name", options.program_name, kMaxName, reserved(), "URScript");
     if (options.ur_tcp.size() != 6 ||
         !std::all_of(options.ur_tcp.begin(), options.ur_tcp.end(), [](double v) { return std::isfinite(v); })) {
-        problems.push_back("ur_tcp: [" + list(options.ur_tcp, ", ") +
-                           "] is no pose; x, y, z in mm and a rotation vector in rad were needed");
+        found.push_back("ur_tcp: [" + list(options.ur_tcp, ", ") +
+                        "] is no pose; x, y, z in mm and a rotation vector in rad were needed");
     }
-    const auto& output = options.ur_arc_output;
-    if (output && !(*output >= 0 && *output <= kLastOutput && *output == std::floor(*output))) {
-        problems.push_back("ur_arc_output: " + plain(*output) +
-                           " is no standard digital output; a whole number from 0 to 7 was needed");
-    }
-    return problems;
+    append(found, number_problems("ur_arc_output", options.ur_arc_output, 0, kLastOutput, "standard digital output"));
+    return found;
 }
 
-std::vector<TextFile> write_ur(const Plan& in_base, const ExportOptions& options) {
+std::vector<TextFile> write(const Program& program, const ExportOptions& options) {
     std::string text = "def " + options.program_name + "():\n";
-    for (const std::string& line : preamble(in_base, options, kUrRounding_mm)) {
+    for (const std::string& line : preamble(program, options, kRounding_mm)) {
         text += "  # " + line + "\n";
     }
     text += "  # Units: m, rad, m/s; poses are position and rotation vector.\n";
@@ -115,19 +116,27 @@ std::vector<TextFile> write_ur(const Plan& in_base, const ExportOptions& options
     if (options.ur_arc_output) {
         text += arc(options, false);
     }
-    const auto& all = in_base.waypoints;
+    const auto& all = program.targets;
     for (std::size_t k = 0; k < all.size(); ++k) {
-        if (k == 0 || all[k].seam != all[k - 1].seam) {
-            text += "  # seam " + std::to_string(all[k].seam) + "\n";
+        const Waypoint& w = all[k].at;
+        if (k == 0 || w.seam != all[k - 1].at.seam) {
+            text += "  # seam " + std::to_string(w.seam) + "\n";
         }
-        text += move(all, k);
-        if (all[k].kind == WaypointKind::weld_start) {
+        if (all[k].move != Move::via) {
+            text += move(all, k);
+        }
+        if (w.kind == WaypointKind::weld_start) {
             text += arc(options, true);
-        } else if (all[k].kind == WaypointKind::weld_end) {
+        } else if (w.kind == WaypointKind::weld_end) {
             text += arc(options, false);
         }
     }
     return {{options.program_name + ".script", text + "end\n"}};
 }
+
+}  // namespace
+
+constinit const Format kUr{"ur", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,  true,
+                           true, told,         problems,          write,          read_ur};
 
 }  // namespace seampath::exporting

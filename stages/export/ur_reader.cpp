@@ -95,7 +95,7 @@ public:
         require(!arc_, "the output off at the end");
         check_blends();
     }
-    std::vector<Waypoint> waypoints;
+    std::vector<Target> targets;
 
 private:
     void require(bool holds, const std::string& needed) const {
@@ -111,7 +111,7 @@ private:
         } else if (c.name == "set_standard_digital_out") {
             require(c.positional.size() == 2 && !c.positional[1].word.empty(), "the number of an output and its state");
             output(c.positional[1].word == "True");
-        } else if (c.name == "movel" || c.name == "movep") {
+        } else if (c.name == "movel" || c.name == "movep" || c.name == "movec") {
             move(c);
         } else {
             scan_.fail("a known function before this place");
@@ -122,54 +122,65 @@ private:
     void output(bool on) {
         require(on != arc_ || !on, "the output off first");
         if (on || arc_) {
-            require(!waypoints.empty() && blends_.back() == 0, "a standstill where the output changes");
-            waypoints.back().kind = on ? WaypointKind::weld_start : WaypointKind::weld_end;
+            require(!targets.empty() && blends_.back() == 0, "a standstill where the output changes");
+            targets.back().at.kind = on ? WaypointKind::weld_start : WaypointKind::weld_end;
         }
         arc_ = on;
     }
 
-    // movel(pose, a=1.2, v=0.25, t=0, r=0), movep(pose, a=1.2, v=0.25, r=0)
+    // movel(pose, a=1.2, v=0.25, t=0, r=0), movep(pose, a=1.2, v=0.25, r=0), movec(via, to, a=1.2, v=0.25, r=0, mode=0)
     void move(const Call& c) {
+        const bool circular = c.name == "movec";
+        const std::size_t points = circular ? 2 : 1;
         require(tcp_, "set_tcp");
-        require(c.positional.size() == 1 && c.positional[0].pose.size() == 6, "a pose");
+        require(c.positional.size() == points, std::to_string(points) + " poses");
         const auto named = [&](const char* name, double otherwise) {
             const auto found = c.named.find(name);
             return found == c.named.end() ? otherwise : found->second.number;
         };
-        require(!c.named.contains("t"), "no time, since it overrides the speed,");
-        const auto& pose = c.positional[0].pose;
-        Waypoint w;
-        w.kind = arc_ ? WaypointKind::weld : WaypointKind::air;
-        w.p = 1000 * Eigen::Vector3d(pose[0], pose[1], pose[2]);
-        w.q = rotation(pose[3], pose[4], pose[5]);
-        w.speed_mm_s = 1000 * named("v", 0.25);
-        waypoints.push_back(w);
-        blends_.push_back(1000 * named("r", 0));
+        for (const auto& [name, given] : c.named) {
+            require(name != "t", "no time, since it overrides the speed,");
+            require(name == "a" || name == "v" || name == "r" || (circular && name == "mode" && given.number == 0),
+                    "only a, v, r and, of a circle, mode=0");
+        }
+        require(!circular || !targets.empty(), "a point to start from");
+        for (std::size_t k = 0; k < points; ++k) {
+            const auto& pose = c.positional[k].pose;
+            require(pose.size() == 6, "a pose");
+            Target target;
+            target.move = !circular ? Move::linear : k == 0 ? Move::via : Move::circular;
+            target.at.kind = arc_ ? WaypointKind::weld : WaypointKind::air;
+            target.at.p = 1000 * Eigen::Vector3d(pose[0], pose[1], pose[2]);
+            target.at.q = rotation(pose[3], pose[4], pose[5]);
+            target.at.speed_mm_s = 1000 * named("v", 0.25);
+            targets.push_back(target);
+            blends_.push_back(k + 1 < points ? 0 : 1000 * named("r", 0));
+        }
     }
 
     // A blend must stay below half of both neighbouring moves, or it may overlap the next and the move is skipped.
     void check_blends() const {
-        for (std::size_t k = 0; k < waypoints.size(); ++k) {
+        for (std::size_t k = 0; k < targets.size(); ++k) {
             if (blends_[k] == 0) {
                 continue;
             }
-            require(k > 0 && k + 1 < waypoints.size() &&
-                        2 * blends_[k] < (waypoints[k].p - waypoints[k - 1].p).norm() &&
-                        2 * blends_[k] < (waypoints[k + 1].p - waypoints[k].p).norm(),
+            require(k > 0 && k + 1 < targets.size() &&
+                        2 * blends_[k] < (targets[k].at.p - targets[k - 1].at.p).norm() &&
+                        2 * blends_[k] < (targets[k + 1].at.p - targets[k].at.p).norm(),
                     "blends below half of both neighbouring moves (move " + std::to_string(k) + ")");
         }
     }
 
     Scanner scan_;
-    std::vector<double> blends_;  // mm, one a waypoint
+    std::vector<double> blends_;  // mm, one a target
     bool tcp_ = false;
     bool arc_ = false;
 };
 
 }  // namespace
 
-std::vector<Waypoint> read_ur(const std::vector<TextFile>& files) {
-    return Controller(files.at(0)).waypoints;
+std::vector<Target> read_ur(const std::vector<TextFile>& files) {
+    return Controller(files.at(0)).targets;
 }
 
 }  // namespace seampath::exporting

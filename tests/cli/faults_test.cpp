@@ -78,12 +78,11 @@ TEST(Faults, OutOfToleranceIsStatus1WithoutPrograms) {
 
 TEST(Faults, ConfigProblemsComeAllAtOnceBeforeAnyWork) {
     const TestFolder folder;
-    const Outcome run = seampath_program({"run", small_tee(), "--out", folder.path() / "out", "--robot", "kuka",
+    const Outcome run = seampath_program({"run", small_tee(), "--out", folder.path() / "out", "--robot", "kuba",
                                           "--set", "plan.speed_mm_s=-1", "--set", "fit.foo=1"});
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 3) << run.err;
-    EXPECT_THAT(run.err,
-                HasSubstr("--robot: /export/robots: \"kuka\" is no known robot; one of csv, json, abb, ur was needed"));
+    EXPECT_THAT(run.err, HasSubstr("--robot: /export/robots: \"kuba\" is no known robot; one of csv, json, abb,"));
     EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 

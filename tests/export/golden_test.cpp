@@ -23,10 +23,10 @@ std::string content(const fs::path& file) {
     return text.str();
 }
 
-void expect_golden(const std::string& folder, const ExportOptions& options) {
+void expect_golden(const std::string& folder, const ExportOptions& options, const Plan& plan) {
     const fs::path golden = fs::path(SEAMPATH_SOURCE_DIR) / "tests" / "golden" / folder;
     const char* update = std::getenv("SEAMPATH_UPDATE_GOLDEN");
-    for (const ProgramFile& file : export_programs(test::golden_plan(), options)) {
+    for (const ProgramFile& file : export_programs(plan, options)) {
         if (update != nullptr && std::string(update) == "1") {
             fs::create_directories(golden);
             std::ofstream(golden / file.file_name, std::ios::binary) << file.content;
@@ -37,22 +37,49 @@ void expect_golden(const std::string& folder, const ExportOptions& options) {
 }
 
 TEST(Golden, ProgramsThatWeldInAMovedFrame) {
-    ExportOptions options;
+    ExportOptions options = test::arc_options();
     options.program_name = "golden";
     options.abb_tool = "tTorch";
     options.abb_work_object = "wPart";
-    options.abb_seam_data = "seam1";
-    options.abb_weld_data = "weld1";
     options.ur_tcp = {0, -12.5, 380, 0, 0.5, 0};
-    options.ur_arc_output = 3;
+    options.base_from_scan_sigma_mm = 0.12;
+    options.base_from_scan_sigma_deg = 0.02;
     options.base_from_scan = {1200, -340, 75.5, 0.5, 0.5, -0.5, 0.5};
-    expect_golden("weld", options);
+    options.robots = test::robots_without("linuxcnc");
+    expect_golden("weld", options, test::golden_plan());
+    options.robots = "linuxcnc";
+    options.base_from_scan = {1200, -340, 75.5, 1, 0, 0, 0};
+    expect_golden("weld", options, test::golden_plan_for("linuxcnc"));
 }
 
 TEST(Golden, ProgramsThatOnlyMove) {
-    ExportOptions options;
+    ExportOptions options = test::cell_options();
     options.program_name = "golden";
-    expect_golden("move", options);
+    options.robots = test::robots_without("linuxcnc");
+    expect_golden("move", options, test::golden_plan());
+    options.robots = "linuxcnc";
+    expect_golden("move", options, test::golden_plan_for("linuxcnc"));
+}
+
+// A weld along half a circle, at numbers that every machine computes alike.
+TEST(Golden, ProgramsWithArcs) {
+    std::vector<Waypoint> waypoints;
+    const Eigen::Quaterniond down(0, 1, 0, 0);
+    waypoints.push_back(test::waypoint(0, WaypointKind::approach, 0, {50, 0, 30}, down, 100));
+    for (int k = 0; k <= 32; ++k) {
+        const double t = k / 32.0;  // (1 - t^2, 2 t) / (1 + t^2) is on the circle
+        const Eigen::Vector3d p(50 * (1 - t * t) / (1 + t * t), 100 * t / (1 + t * t), 0);
+        const WaypointKind kind = k == 0    ? WaypointKind::weld_start
+                                  : k == 32 ? WaypointKind::weld_end
+                                            : WaypointKind::weld;
+        waypoints.push_back(test::waypoint(0, kind, 2.5 * k, p, down, k == 0 ? 100 : 8.5));
+    }
+    waypoints.push_back(test::waypoint(0, WaypointKind::retract, 80, {0, 50, 30}, down, 100));
+    ExportOptions options = test::arc_options();
+    options.program_name = "arc";
+    options.kuka_spline = true;
+    options.robots = "abb,kuka,fanuc,ur,yaskawa";
+    expect_golden("arc", options, test::finished(waypoints));
 }
 
 }  // namespace

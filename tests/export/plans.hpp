@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -65,29 +66,86 @@ inline Plan golden_plan() {
          waypoint(1, weld_end, 314, {50, 0, 0}, c, 12), waypoint(1, retract, 314, {50, 0, 25}, c, 100)});
 }
 
-/// With all that the arc is switched on and off with.
-inline ExportOptions arc_options() {
+/// The golden plan as that robot can have it: LinuxCNC's angles have no way from one of its orientations, tool X
+/// straight down, to the next, and noether has welds only.
+inline Plan golden_plan_for(std::string_view robot) {
+    Plan plan = golden_plan();
+    if (robot == "linuxcnc") {
+        const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitZ());
+        for (Waypoint& w : plan.waypoints) {
+            w.q = (turn * w.q).normalized();
+        }
+    }
+    return plan;
+}
+
+/// Every robot but those named.
+inline std::string robots_without(std::string_view left_out) {
+    std::string robots;
+    for (const std::string_view name : kRobotNames) {
+        if (left_out.find(name) == std::string_view::npos) {
+            robots += (robots.empty() ? "" : ",") + std::string(name);
+        }
+    }
+    return robots;
+}
+
+/// The numbers of a cell that no robot can do without.
+inline ExportOptions cell_options() {
     ExportOptions options;
-    options.abb_seam_data = "seam1";
-    options.abb_weld_data = "weld1";
-    options.ur_arc_output = 3;
+    options.robots = robots_without("");
+    options.kuka_tool = 6;
+    options.fanuc_tool = 2;
+    options.fanuc_user_frame = 1;
+    options.fanuc_configuration = "N U T, 0, 0, 0";
+    options.yaskawa_tool = 1;
+    options.yaskawa_speed_unit = "cm/min";
+    options.yaskawa_configuration = "1,0,0,0,0,0";
     return options;
 }
 
-/// One to three seams of 2 to 40 weld points each, anywhere within 3 m, at any speed and any rotation, turned by less
-/// than half a turn from point to point or not at all.
+/// With all that the arc is switched on and off with.
+inline ExportOptions arc_options() {
+    ExportOptions options = cell_options();
+    options.abb_seam_data = "seam1";
+    options.abb_weld_data = "weld1";
+    options.abb_weave_data = "weave1";
+    options.kuka_base = 3;
+    options.kuka_arc_on = "ArcOn";
+    options.kuka_arc_off = "ArcOff";
+    options.fanuc_arc_start = 6;
+    options.fanuc_arc_end = 7;
+    options.fanuc_weave = 8;
+    options.ur_arc_output = 3;
+    options.yaskawa_user_frame = 2;
+    options.yaskawa_arc_start = 4;
+    options.yaskawa_arc_end = 5;
+    options.yaskawa_weave = 9;
+    options.linuxcnc_tool = 2;
+    options.linuxcnc_work_offset = 7;
+    options.linuxcnc_arc_output = 1;
+    return options;
+}
+
+inline double at_random(std::mt19937_64& generator, double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(generator);
+}
+
+inline Eigen::Vector4d random_direction(std::mt19937_64& generator) {
+    std::normal_distribution<double> normal;
+    return Eigen::Vector4d(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
+}
+
+/// One to three seams of 2 to 40 weld points each, anywhere within 3 m, at any rotation, turned by less than half a
+/// turn from point to point or not at all. Speeds are whole centimetres a minute, which every language can hold.
 inline Plan random_plan(std::mt19937_64& generator) {
-    const auto uniform = [&](double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(generator);
-    };
-    const auto direction = [&] {
-        std::normal_distribution<double> normal;
-        return Eigen::Vector4d(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
-    };
+    const auto uniform = [&](double low, double high) { return at_random(generator, low, high); };
+    const auto direction = [&] { return random_direction(generator); };
     std::vector<Waypoint> waypoints;
     const int seams = std::uniform_int_distribution<int>(1, 3)(generator);
     for (int seam = 0; seam < seams; ++seam) {
-        const double speed = uniform(0.5, 60), air = uniform(50, 900), step = std::pow(10, uniform(-2, 2));
+        const double speed = std::floor(uniform(12, 360)) / 6, air = std::floor(uniform(50, 900)),
+                     step = std::pow(10, uniform(-2, 2));
         Eigen::Vector3d p(uniform(-3000, 3000), uniform(-3000, 3000), uniform(-3000, 3000));
         Eigen::Quaterniond q(direction());
         const auto add = [&](WaypointKind kind, double at, double how_fast) {
@@ -107,6 +165,30 @@ inline Plan random_plan(std::mt19937_64& generator) {
         }
         p += 30 * Eigen::Vector3d(direction().head<3>());
         add(WaypointKind::retract, step * points, air);
+    }
+    return finished(waypoints);
+}
+
+/// A weld along a helix of any size, pitch and place, at 1 to 3 deg a waypoint and as many as 300 of them, with a torch
+/// that keeps its place on it.
+inline Plan random_helix(std::mt19937_64& generator) {
+    const auto uniform = [&](double low, double high) { return at_random(generator, low, high); };
+    const double radius = uniform(10, 300), rise = uniform(-0.05, 0.05) * radius, step = uniform(1, 3) / 180 * M_PI;
+    const int points = static_cast<int>(uniform(20, 300));
+    const Eigen::Quaterniond turn(random_direction(generator)), torch(random_direction(generator));
+    const Eigen::Vector3d centre(uniform(-2000, 2000), uniform(-2000, 2000), uniform(-2000, 2000));
+    std::vector<Waypoint> waypoints;
+    for (int k = -1; k <= points; ++k) {
+        const double angle = step * std::clamp(k, 0, points - 1), off = k < 0 || k == points ? 30 : 0;
+        const Eigen::Quaterniond along(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+        const WaypointKind kind = k < 0             ? WaypointKind::approach
+                                  : k == 0          ? WaypointKind::weld_start
+                                  : k == points     ? WaypointKind::retract
+                                  : k == points - 1 ? WaypointKind::weld_end
+                                                    : WaypointKind::weld;
+        waypoints.push_back(waypoint(0, kind, angle * radius,
+                                     centre + turn * (along * Eigen::Vector3d(radius, 0, rise * angle + off)),
+                                     turn * along * torch, k > 0 && k < points ? 9 : 100));
     }
     return finished(waypoints);
 }

@@ -33,7 +33,7 @@ TEST(Config, TellsAllProblemsAtOnceEachWithItsPathAndAHint) {
         "fit": 3,
         "extract": {"joint": "filet"},
         "validate": {"min_coverage": 1.5, "tolerance_mm": "fine"},
-        "export": {"robots": "abb,kuka", "base_from_scan": [1, 2], "even_if_out_of_tolerance": 1, "program_name": 7}
+        "export": {"robots": "abb,kuba", "base_from_scan": [1, 2], "even_if_out_of_tolerance": 1, "program_name": 7}
     })";
     EXPECT_EQ(problems(text),
               "cell.json: /plcae: there is no such section; did you mean \"place\"?\n"
@@ -48,7 +48,8 @@ TEST(Config, TellsAllProblemsAtOnceEachWithItsPathAndAHint) {
               "cell.json: /export/base_from_scan: holds 2 values; 7 numbers are needed\n"
               "cell.json: /export/even_if_out_of_tolerance: 1 is neither true nor false\n"
               "cell.json: /export/program_name: 7 is not a text\n"
-              "cell.json: /export/robots: \"kuka\" is no known robot; one of csv, json, abb, ur was needed");
+              "cell.json: /export/robots: \"kuba\" is no known robot; one of csv, json, abb, kuka, fanuc, ur, yaskawa, "
+              "linuxcnc, ros, noether was needed");
 }
 
 TEST(Config, ChecksOverridesLikeTheFile) {
@@ -63,7 +64,8 @@ TEST(Config, ChecksOverridesLikeTheFile) {
               "--set: /speed_mm_s: an option is named stage.key; did you mean /plan/speed_mm_s?\n"
               "--joint: /extract/joint: \"saddel\" is none of auto, fillet, lap, butt, v-groove, corner, saddle; "
               "did you mean \"saddle\"?\n"
-              "--robot: /export/robots: \"abc\" is no known robot; one of csv, json, abb, ur was needed");
+              "--robot: /export/robots: \"abc\" is no known robot; one of csv, json, abb, kuka, fanuc, ur, yaskawa, "
+              "linuxcnc, ros, noether was needed");
 }
 
 TEST(Config, OverridesWinOverTheFileAndTextNeedsNoQuotes) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,28 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "datasets/dataset.hpp"
+#include "tests/test_folder.hpp"
 
 /// Folders and scans for the tests of runs.
 namespace seampath {
-
-/// A folder of its own that goes when the test ends.
-class TestFolder {
-public:
-    TestFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "seampath-test-XXXXXX").string();
-        path_ = mkdtemp(pattern.data());
-    }
-    ~TestFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 inline std::string text_of(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);

@@ -2,7 +2,7 @@ MODULE golden
   ! Written by Seampath.
   ! Frame: robot base; base_from_scan is 0 0 0 mm, quaternion w x y z 1 0 0 0.
   ! Tool: +Z along the torch into the joint, +X along travel.
-  ! Straight moves stay within 0.0157 mm of the seam.
+  ! Moves stay within 0.0157 mm of the seam.
   ! Positions are rounded by up to 0.0005 mm.
   ! Units: mm, mm/s; quaternions w, x, y, z. Positions are those of tool0 in wobj0.
   LOCAL CONST speeddata speed0:=[100,500,5000,1000];
