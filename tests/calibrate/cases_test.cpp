@@ -1,0 +1,63 @@
+#include "tests/calibrate/cases.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/error.hpp"
+
+/// A few seeds of each; build/seampath_fixture prints all.
+namespace seampath {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+TEST(FixtureCases, BallsAmongClutterGiveTheFrame) {
+    const CaseResult r = ball_case(1, 5);
+    EXPECT_LE(r.rms_mm, 0.01);
+    EXPECT_EQ(r.good, 5) << r.note;
+    EXPECT_GE(r.inside, 4);
+}
+
+TEST(FixtureCases, TheBallThatMovedIsNamed) {
+    EXPECT_EQ(moved_ball_case(1, 4).good, 4);
+}
+
+std::string refusal(const BallScene& scene, double tolerance = 1) {
+    std::vector<Vector3d> centres;
+    for (const NamedPoint& ball : scene.balls) {
+        centres.emplace_back(scene.mirrored ? -ball.p.x() : ball.p.x(), ball.p.y(), ball.p.z());
+    }
+    try {
+        match_balls(scene.balls, centres, tolerance);
+        return "";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+TEST(MatchBalls, MirroredAndEqualLayoutsAreRefused) {
+    BallScene scene;
+    EXPECT_EQ(refusal(scene), "");
+    scene.mirrored = true;
+    EXPECT_THAT(refusal(scene), HasSubstr("mirror image"));
+    scene.mirrored = false;
+    scene.balls = {{"A", {0, 0, 0}}, {"B", {300, 0, 0}}, {"C", {300, 200, 0}}, {"D", {0, 200, 0}}};
+    EXPECT_THAT(refusal(scene), HasSubstr("can change places"));
+    scene.balls = {{"A", {0, 0, 0}}, {"B", {300, 0, 0}}};
+    EXPECT_THAT(refusal(scene), HasSubstr("no three of them"));
+}
+
+TEST(MatchBalls, WhatIsMissingAndWhatIsMoreDoesNotMatter) {
+    const BallScene scene;
+    const std::vector<Vector3d> found{
+        {900, 900, 0}, scene.balls[3].p, {5, -100, 3}, scene.balls[0].p, scene.balls[1].p};
+    const auto match = match_balls(scene.balls, found, 1);
+    EXPECT_EQ(match[0], 3u);
+    EXPECT_EQ(match[1], 4u);
+    EXPECT_EQ(match[2], std::nullopt);
+    EXPECT_EQ(match[3], 1u);
+}
+
+}  // namespace
+}  // namespace seampath
