@@ -1,0 +1,152 @@
+#include "pipeline/fixture_calibration.hpp"
+
+#include <algorithm>
+
+#include "pipeline/digest.hpp"
+#include "pipeline/text.hpp"
+#include "stages/error.hpp"
+#include "stages/text.hpp"
+
+namespace seampath {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+void from_balls(const Scan& scan, FixtureCalibration& c) {
+    const std::vector<FoundBall> found = find_balls(scan, c.nominal.ball_diameter_mm / 2);
+    std::vector<Vector3d> centres;
+    for (const FoundBall& ball : found) {
+        centres.push_back(ball.centre);
+    }
+    const auto match = match_balls(c.nominal.features, centres, c.nominal.match_tolerance_mm);
+    std::vector<FrameFeature> features;
+    std::string missing;
+    for (std::size_t i = 0; i < match.size(); ++i) {
+        const NamedPoint& nominal = c.nominal.features[i];
+        if (!match[i]) {
+            missing += (missing.empty() ? "" : ", ") + nominal.name;
+            continue;
+        }
+        const FoundBall& ball = found[*match[i]];
+        features.push_back({nominal.name, 0, false, {{nominal.p, ball.centre, ball.covariance}}, {}});
+        c.numbers.push_back({nominal.name + ": points", static_cast<double>(ball.points), ""});
+        c.numbers.push_back({nominal.name + ": noise of its points", ball.scale_mm, "mm"});
+        c.numbers.push_back({nominal.name + ": radius of a free fit", ball.free_radius_mm, "mm"});
+    }
+    c.frame = calibrate_frame(features, c.nominal.work_points, c.nominal.frame);
+    if (!missing.empty()) {
+        c.frame.notes.push_back("not found in the scan: " + missing);
+    }
+    if (found.size() > features.size()) {
+        c.frame.notes.push_back(std::to_string(found.size() - features.size()) +
+                                " more balls of this size were found, which are no nominal ones");
+    }
+}
+
+const TouchedRow& row_of(const std::vector<TouchedRow>& rows, const std::string& name) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [&](const TouchedRow& row) { return row.name == name; });
+    if (found == rows.end()) {
+        std::vector<std::string_view> names;
+        for (const auto& row : rows) {
+            names.emplace_back(row.name);
+        }
+        throw InputError("points: \"" + name + "\" was not touched; there are " + join(names) + hint(name, names));
+    }
+    return *found;
+}
+
+void refuse_unknown(const std::vector<TouchedRow>& rows, const std::vector<NamedPoint>& nominal) {
+    std::vector<std::string_view> names;
+    for (const auto& point : nominal) {
+        names.emplace_back(point.name);
+    }
+    for (const TouchedRow& row : rows) {
+        if (std::find(names.begin(), names.end(), row.name) == names.end()) {
+            throw InputError("points: \"" + row.name + "\" is no nominal point; there are " + join(names) +
+                             hint(row.name, names));
+        }
+    }
+}
+
+void from_points(const std::vector<TouchedRow>& rows, FixtureCalibration& c) {
+    refuse_unknown(rows, c.nominal.features);
+    std::vector<std::string> names;
+    std::vector<FramePoint> points;
+    std::vector<Vector3d> nominal, measured;
+    std::vector<FrameFeature> features;
+    for (const NamedPoint& feature : c.nominal.features) {
+        const TouchedRow& row = row_of(rows, feature.name);
+        const FramePoint point{feature.p, row.p, row.sigma_mm * row.sigma_mm * Eigen::Matrix3d::Identity()};
+        names.push_back(feature.name);
+        points.push_back(point);
+        nominal.push_back(feature.p);
+        measured.push_back(row.p);
+        features.push_back({feature.name, 0, false, {point}, {}});
+    }
+    if (c.nominal.method == FixtureMethod::points) {
+        c.frame = calibrate_frame(features, c.nominal.work_points, c.nominal.frame);
+    } else {
+        features = three_point_features(names, points);
+        c.frame = calibrate_frame(features, c.nominal.work_points, c.nominal.frame, rigid_through(nominal, measured));
+    }
+}
+
+void from_planes(const std::vector<TouchedRow>& rows, FixtureCalibration& c) {
+    std::vector<NamedPoint> all;
+    std::vector<DatumPlane> planes;
+    for (const NominalPlane& nominal : c.nominal.planes) {
+        DatumPlane plane{nominal.name, nominal.normal, nominal.offset_mm, {}};
+        for (const NamedPoint& point : nominal.points) {
+            const TouchedRow& row = row_of(rows, point.name);
+            plane.touched.push_back({point.p, row.p, row.sigma_mm});
+            all.push_back(point);
+        }
+        planes.push_back(std::move(plane));
+    }
+    refuse_unknown(rows, all);
+    c.frame = calibrate_planes(planes, c.nominal.work_points, c.nominal.frame);
+}
+
+}  // namespace
+
+FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::path& nominal,
+                                     const ReadOptions& read_options) {
+    FixtureCalibration c;
+    c.nominal = read_nominal_fixture(nominal);
+    c.inputs.push_back({nominal.string(), sha256_of_file(nominal)});
+    c.inputs.push_back({observations.string(), sha256_of_file(observations)});
+    switch (c.nominal.method) {
+        case FixtureMethod::balls:
+            from_balls(read(observations, read_options), c);
+            break;
+        case FixtureMethod::points:
+        case FixtureMethod::three_points:
+            from_points(read_touched_points(observations, c.nominal.sigma_mm), c);
+            break;
+        case FixtureMethod::planes:
+            from_planes(read_touched_points(observations, c.nominal.sigma_mm), c);
+            break;
+    }
+    return c;
+}
+
+void compare_with(const StoredFixture& accepted, FixtureCalibration& c) {
+    if (accepted.name != c.nominal.name) {
+        throw InputError("calibrate: the accepted calibration is of \"" + accepted.name + "\", this one of \"" +
+                         c.nominal.name + "\"; give each fixture a folder of its own");
+    }
+    FrameChange change{
+        accepted.date, displacement(accepted.base_from_part, c.frame.base_from_part), {}, c.nominal.change_limit_mm};
+    for (const WorkPoint& w : c.nominal.work_points) {
+        change.work_point_mm.push_back((c.frame.base_from_part * w.p - accepted.base_from_part * w.p).norm());
+        if (change.work_point_mm.back() > change.limit_mm) {
+            c.frame.faults.push_back("work point " + w.name + " has moved by " + fixed(change.work_point_mm.back(), 3) +
+                                     " mm since the calibration accepted on " + accepted.date + "; the limit is " +
+                                     shortest(change.limit_mm) + " mm");
+        }
+    }
+    c.change = change;
+}
+
+}  // namespace seampath

@@ -1,0 +1,227 @@
+#include "pipeline/fixture_nominal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/files.hpp"
+#include "pipeline/json_text.hpp"
+#include "pipeline/text.hpp"
+#include "stages/error.hpp"
+
+namespace seampath {
+namespace {
+
+using Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::array<std::string_view, 2> kWeakNames{"refuse", "freeze"};
+
+/// One object of the file: values by key, and what is wrong with them.
+class Object {
+public:
+    Object(const Json& json, std::string path, std::vector<std::string>& problems)
+        : json_(json), path_(std::move(path)), problems_(problems) {
+        if (!json_.is_object()) {
+            problem("", json_excerpt(json_) + " is not an object");
+        }
+    }
+
+    bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
+
+    const Json* take(const std::string& key, bool needed) {
+        known_.push_back(key);
+        if (has(key)) {
+            return &json_.at(key);
+        }
+        if (needed && json_.is_object()) {
+            problem(key, "is missing");
+        }
+        return nullptr;
+    }
+
+    std::string text(const std::string& key, bool needed) {
+        const Json* value = take(key, needed);
+        if (value && (!value->is_string() || value->get<std::string>().empty())) {
+            problem(key, json_excerpt(*value) + " is no text");
+        }
+        return value && value->is_string() ? value->get<std::string>() : "";
+    }
+
+    void number(const std::string& key, bool needed, double& target, double low, bool open = true) {
+        const Json* value = take(key, needed);
+        if (!value) {
+            return;
+        }
+        const double v = value->is_number() ? value->get<double>() : NAN;
+        if (!std::isfinite(v) || v < low || (open && v == low)) {
+            problem(key,
+                    json_excerpt(*value) + " is no number " + (open ? "above " : "of at least ") + Json(low).dump());
+            return;
+        }
+        target = v;
+    }
+
+    Vector3d vector(const std::string& key) {
+        const Json* value = take(key, true);
+        const bool three = value && value->is_array() && value->size() == 3 &&
+                           std::all_of(value->begin(), value->end(), [](const Json& v) { return v.is_number(); });
+        if (value && !three) {
+            problem(key, json_excerpt(*value) + " is no vector; [x, y, z] was needed");
+        }
+        return three ? Vector3d((*value)[0], (*value)[1], (*value)[2]) : Vector3d::Zero();
+    }
+
+    template <class F>
+    void each(const std::string& key, bool needed, const F& f) {
+        const Json* list = take(key, needed);
+        if (list && !list->is_array()) {
+            problem(key, json_excerpt(*list) + " is no list");
+        } else if (list) {
+            for (std::size_t i = 0; i < list->size(); ++i) {
+                Object object((*list)[i], path_ + "/" + key + "/" + std::to_string(i), problems_);
+                f(object);
+                object.finish();
+            }
+        }
+    }
+
+    template <std::size_t N>
+    std::size_t choice(const std::string& key, bool needed, const std::array<std::string_view, N>& names,
+                       std::size_t otherwise) {
+        const std::string word = text(key, needed);
+        const auto found = std::find(names.begin(), names.end(), word);
+        if (!word.empty() && found == names.end()) {
+            problem(key, "\"" + word + "\" is unknown; there are " + join(names) + hint(word, names));
+        }
+        return found == names.end() ? otherwise : static_cast<std::size_t>(found - names.begin());
+    }
+
+    void problem(const std::string& key, const std::string& what) {
+        problems_.push_back(path_ + (key.empty() ? "" : "/" + key) + ": " + what);
+    }
+
+    void finish() {
+        if (!json_.is_object()) {
+            return;
+        }
+        const std::vector<std::string_view> known(known_.begin(), known_.end());
+        for (const auto& [key, value] : json_.items()) {
+            if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+                const std::string near = hint(key, known);
+                problem(key, "there is no such key" + (near.empty() ? "; there are " + join(known) : near));
+            }
+        }
+    }
+
+private:
+    const Json& json_;
+    std::string path_;
+    std::vector<std::string>& problems_;
+    std::vector<std::string> known_;
+};
+
+NamedPoint point_of(Object& object) {
+    return {object.text("name", true), object.vector("p_mm")};
+}
+
+NominalPlane plane_of(Object& object) {
+    NominalPlane plane;
+    plane.name = object.text("name", true);
+    plane.normal = object.vector("normal");
+    if (plane.normal.norm() > 0) {
+        plane.normal.normalize();
+    } else {
+        object.problem("normal", "has no direction");
+    }
+    object.number("offset_mm", true, plane.offset_mm, -1e9);
+    object.each("points", true, [&](Object& point) { plane.points.push_back(point_of(point)); });
+    return plane;
+}
+
+void check_names(Object& root, const std::string& key, const std::vector<std::string>& names) {
+    std::set<std::string> seen;
+    for (const auto& name : names) {
+        if (!name.empty() && !seen.insert(name).second) {
+            root.problem(key, "the name \"" + name + "\" stands twice");
+        }
+    }
+}
+
+// What the method needs beside what all take.
+void read_method(Object& root, NominalFixture& n) {
+    std::vector<std::string> names;
+    switch (n.method) {
+        case FixtureMethod::balls:
+            root.number("ball_diameter_mm", true, n.ball_diameter_mm, 0);
+            root.number("match_tolerance_mm", false, n.match_tolerance_mm, 0);
+            root.each("balls", true, [&](Object& o) { n.features.push_back(point_of(o)); });
+            break;
+        case FixtureMethod::points:
+        case FixtureMethod::three_points:
+            root.number("sigma_mm", false, n.sigma_mm, 0);
+            root.each("points", true, [&](Object& o) { n.features.push_back(point_of(o)); });
+            break;
+        case FixtureMethod::planes:
+            root.number("sigma_mm", false, n.sigma_mm, 0);
+            root.each("planes", true, [&](Object& o) { n.planes.push_back(plane_of(o)); });
+            break;
+    }
+    for (const NamedPoint& feature : n.features) {
+        names.push_back(feature.name);
+    }
+    for (const NominalPlane& plane : n.planes) {
+        for (const NamedPoint& point : plane.points) {
+            names.push_back(point.name);
+        }
+    }
+    check_names(root, n.method == FixtureMethod::balls ? "balls" : "points", names);
+}
+
+}  // namespace
+
+NominalFixture read_nominal_fixture(const std::filesystem::path& file) {
+    NominalFixture n;
+    n.frame.weak_ratio = 1e-5;
+    std::vector<std::string> problems;
+    try {
+        const Json json = parse_json(read_file(file, kMaxBytes, "nominal"));
+        Object root(json, "", problems);
+        n.name = root.text("name", true);
+        n.method = static_cast<FixtureMethod>(root.choice("method", true, kFixtureMethodNames, 0));
+        if (problems.empty()) {
+            read_method(root, n);
+            root.each("work_points", false, [&](Object& o) {
+                const NamedPoint p = point_of(o);
+                n.work_points.push_back({p.name, p.p});
+            });
+            root.number("limit_mm", false, n.frame.limit_mm, 0);
+            root.number("change_limit_mm", false, n.change_limit_mm, 0);
+            n.frame.weak = static_cast<WeakDirection>(root.choice("weak_directions", false, kWeakNames, 0));
+            double trials = n.frame.trials, seed = 1;
+            root.number("trials", false, trials, 1000, false);
+            root.number("seed", false, seed, 0, false);
+            n.frame.trials = static_cast<int>(std::min(trials, 1e6));
+            n.frame.seed = static_cast<std::uint64_t>(seed);
+            root.finish();
+        }
+    } catch (const JsonError& error) {
+        problems.push_back(std::string("/: ") + error.what());
+    }
+    if (!problems.empty()) {
+        std::string text;
+        for (const auto& problem : problems) {
+            text += (text.empty() ? "" : "\n") + file.string() + ": " + problem;
+        }
+        throw InputError(text);
+    }
+    if (n.work_points.empty()) {
+        n.work_points.push_back({"origin of the part", Vector3d::Zero()});
+    }
+    return n;
+}
+
+}  // namespace seampath

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stages/calibrate/calibrate.hpp"
+
+/// The files that a fixture calibration reads.
+namespace seampath {
+
+enum class FixtureMethod { balls, points, three_points, planes };
+inline constexpr std::array<std::string_view, 4> kFixtureMethodNames{"balls", "points", "three-points", "planes"};
+
+/// A datum plane and where it is to be touched.
+struct NominalPlane {
+    std::string name;
+    Eigen::Vector3d normal;
+    double offset_mm = 0;
+    std::vector<NamedPoint> points;
+};
+
+/// What is known of a fixture before it is measured.
+struct NominalFixture {
+    std::string name;
+    FixtureMethod method = FixtureMethod::balls;
+    double ball_diameter_mm = 0;
+    double match_tolerance_mm = 1;
+    double sigma_mm = 0;               ///< 1-sigma of a touched point that names none of its own
+    std::vector<NamedPoint> features;  ///< balls or points
+    std::vector<NominalPlane> planes;
+    std::vector<WorkPoint> work_points;
+    double change_limit_mm = 0.2;  ///< most that a work point may have moved since the last accepted calibration
+    FrameOptions frame;
+};
+
+/// Reads the nominal file: JSON with comments, all lengths in mm, unknown keys an error. Throws one InputError with all
+/// problems, a line each.
+NominalFixture read_nominal_fixture(const std::filesystem::path& file);
+
+struct TouchedRow {
+    std::string name;
+    Eigen::Vector3d p;  ///< base frame, mm
+    double sigma_mm = 0;
+};
+
+/// Reads touched points: a header `name,x,y,z` with an optional column `sigma_mm`, one row a point; a line
+/// `# unit: m` says what the numbers are in, mm otherwise. `sigma_mm` stands for points without one. Throws InputError
+/// naming file and line.
+std::vector<TouchedRow> read_touched_points(const std::filesystem::path& file, double sigma_mm);
+
+}  // namespace seampath

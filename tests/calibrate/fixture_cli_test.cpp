@@ -1,0 +1,139 @@
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/fixture_calibration.hpp"
+#include "tests/cli/spawn.hpp"
+
+/// The program as a user calls it.
+namespace seampath {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class FixtureCli : public testing::Test {
+protected:
+    TestFolder folder;
+    fs::path nominal = folder.path() / "jig.json", touched = folder.path() / "touched.csv", out = folder.path() / "out";
+
+    void SetUp() override {
+        write(nominal, R"({
+  "name": "jig", "method": "points", "sigma_mm": 0.01,  // touch probe
+  "points": [{"name": "P1", "p_mm": [0, 0, 40]}, {"name": "P2", "p_mm": [400, 0, 70]},
+             {"name": "P3", "p_mm": [370, 290, 45]}, {"name": "P4", "p_mm": [40, 240, 130]}],
+  "work_points": [{"name": "nozzle", "p_mm": [200, 150, 60]}], "limit_mm": 0.1, "change_limit_mm": 0.2
+})");
+        write(touched, "name,x,y,z\nP1,1000,0,40\nP2,1400,0,70\nP3,1370,290,45\nP4,1040,240,130\n");
+    }
+    static void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+    void shift_all(const std::string& x_offset_row) { write(touched, "name,x,y,z\n" + x_offset_row); }
+    Outcome calibrate(const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> words{"calibrate", "fixture", touched,  "--nominal",           nominal,
+                                       "--out",     out,       "--date", "2026-11-26T05:00:00Z"};
+        words.insert(words.end(), more.begin(), more.end());
+        return seampath_program(words);
+    }
+};
+
+TEST_F(FixtureCli, WritesResultFramesAndHistory) {
+    const Outcome run = calibrate();
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(run.out, AllOf(HasSubstr("jig: pass"), HasSubstr("1000.0000 0.0000 0.0000"), HasSubstr("nozzle")));
+    const auto json = nlohmann::json::parse(text_of(out / "result.json"));
+    EXPECT_EQ(json.at("verdict"), "pass");
+    EXPECT_EQ(json.at("inputs").size(), 2u);
+    EXPECT_EQ(json.at("inputs")[0].at("sha256").get<std::string>().size(), 64u);
+    for (const char* file : {"abb/frame.mod", "kuka/frame.dat", "fanuc/frame.ls", "ur/frame.script",
+                             "yaskawa/UFRAME.CND", "json/frame.json", "urdf/frame.urdf"}) {
+        EXPECT_TRUE(fs::exists(out / "frames" / file)) << file;
+    }
+    const StoredFixture stored = read_fixture_result(out / "result.json");
+    EXPECT_TRUE(stored.pass);
+    EXPECT_FALSE(stored.accepted);
+    EXPECT_THAT(seampath_program({"calibrate", "history", out}).out, HasSubstr("2026-11-26T05:00:00Z"));
+}
+
+TEST_F(FixtureCli, SameInputGivesSameBytes) {
+    calibrate();
+    const std::string first = text_of(out / "result.json");
+    calibrate();
+    EXPECT_EQ(text_of(out / "result.json"), first);
+}
+
+TEST_F(FixtureCli, AnAcceptedOneStaysUntilAReasonIsGiven) {
+    EXPECT_EQ(calibrate({"--accept", "--reason", "first"}).status, 0);
+    const std::string accepted = text_of(out / "result.json");
+    shift_all("P1,1000.5,0,40\nP2,1400.5,0,70\nP3,1370.5,290,45\nP4,1040.5,240,130\n");
+    const Outcome moved = calibrate();
+    EXPECT_EQ(moved.status, 1);
+    EXPECT_THAT(moved.out, HasSubstr("work point nozzle has moved by 0.500 mm"));
+    EXPECT_EQ(text_of(out / "result.json"), accepted);
+    const auto candidate = nlohmann::json::parse(text_of(out / "candidate.json"));
+    EXPECT_NEAR(candidate.at("change").at("x_mm").get<double>(), 0.5, 1e-9);
+    EXPECT_EQ(calibrate({"--accept"}).status, 2);
+    EXPECT_EQ(calibrate({"--accept", "--reason", "jig moved on purpose"}).status, 0);
+    EXPECT_EQ(read_fixture_result(out / "result.json").accepted->reason, "jig moved on purpose");
+    EXPECT_FALSE(fs::exists(out / "candidate.json"));
+}
+
+TEST_F(FixtureCli, AFailedOneCanNotBeAcceptedAndGivesNoFrames) {
+    shift_all("P1,1000,0,40\nP2,1400,0,70\nP3,1370,290,45.3\nP4,1040,240,130\n");
+    const Outcome run = calibrate();
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.out, HasSubstr("the features disagree"));
+    EXPECT_FALSE(fs::exists(out / "frames"));
+    const Outcome accept = calibrate({"--accept", "--reason", "please"});
+    EXPECT_EQ(accept.status, 2);
+    EXPECT_THAT(accept.err, HasSubstr("did not pass and can't be accepted"));
+}
+
+TEST_F(FixtureCli, StudyCountsRepeatsAndDrift) {
+    for (int i = 0; i < 8; ++i) {
+        const std::string x = "." + std::to_string(100 + 20 * i + (i % 2));
+        shift_all("P1,1000" + x + ",0,40\nP2,1400" + x + ",0,70\nP3,1370" + x + ",290,45\nP4,1040" + x + ",240,130\n");
+        EXPECT_EQ(calibrate().status, 0);
+    }
+    const Outcome study = seampath_program({"calibrate", "study", out, "--limit", "0.5"});
+    EXPECT_EQ(study.status, 1);
+    EXPECT_THAT(study.out, AllOf(HasSubstr("8 runs"), HasSubstr("ALARM: nozzle, x drifts by 0.020")));
+}
+
+TEST_F(FixtureCli, BadInputIsOneClearLineEach) {
+    const auto error = [&](const fs::path& file, const std::string& text) {
+        SetUp();
+        write(file, text);
+        const Outcome run = calibrate();
+        EXPECT_EQ(run.status, 2) << run.err;
+        EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+        return run.err;
+    };
+    EXPECT_THAT(error(nominal, R"({"name": "jig", "method": "pionts"})"), HasSubstr("did you mean \"points\"?"));
+    EXPECT_THAT(error(nominal, R"({"name": "jig", "method": "points", "points": [], "limit": 1})"),
+                HasSubstr("/limit: there is no such key; did you mean \"limit_mm\"?"));
+    EXPECT_THAT(error(nominal, "{"), HasSubstr("jig.json: /: "));
+    EXPECT_THAT(error(touched, "name,x,y,z\nP1,1,2,3\n"), HasSubstr("\"P2\" was not touched"));
+    EXPECT_THAT(error(touched, "name,x,y,z\nP1,1,2,a\n"),
+                HasSubstr("touched.csv:2: column z: \"a\" is no finite number"));
+    EXPECT_THAT(error(touched, "# unit: furlong\nname,x,y,z\nP1,1,2,3\n"), HasSubstr("\"furlong\" is unknown"));
+    EXPECT_THAT(error(touched, "name,x,y\nP1,1,2\n"), HasSubstr("no column \"z\""));
+    EXPECT_THAT(error(touched, ""), HasSubstr("there is no touched point"));
+    write(touched, "name,x,y,z\nP1,1,2,3\nP1,1,2,3\n");
+    EXPECT_THAT(calibrate().err, HasSubstr("\"P1\" stands twice"));
+    EXPECT_EQ(seampath_program({"calibrate", "history", folder.path()}).status, 2);
+}
+
+TEST_F(FixtureCli, CollinearPointsNameWhatIsOpen) {
+    write(nominal, R"({"name": "jig", "method": "points", "sigma_mm": 0.01,
+  "points": [{"name": "P1", "p_mm": [0, 0, 0]}, {"name": "P2", "p_mm": [100, 0, 0]}, {"name": "P3", "p_mm": [400, 0, 0]}]})");
+    shift_all("P1,0,0,0\nP2,100,0,0\nP3,400,0,0\n");
+    const Outcome run = calibrate();
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.out, HasSubstr("the features do not hold: turn about (1.000, 0.000, 0.000)"));
+}
+
+}  // namespace
+}  // namespace seampath
