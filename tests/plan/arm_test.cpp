@@ -129,10 +129,13 @@ TEST(ArmTravel, ClosedSeamsAndSeveralSeamsAndPasses) {
     }
 }
 
-// A thousand short seams anywhere about the arms: either all that is promised holds, or the plan says why not and has
-// not been touched.
-TEST(ArmTravel, LawsHoldForAThousandSeams) {
-    std::mt19937_64 generator(11);
+// A thousand short seams, a fifth of them in each of five tests that can run side by side, anywhere about the arms:
+// either all that is promised holds, or the plan says why not and has not been touched.
+class ArmLaws : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, ArmLaws, testing::Range(11, 16));
+
+TEST_P(ArmLaws, HoldForTwoHundredSeams) {
+    std::mt19937_64 generator(static_cast<std::uint64_t>(GetParam()));
     const auto uniform = [&](double low, double high) {
         return low + (high - low) * std::generate_canonical<double, 53>(generator);
     };
@@ -144,7 +147,7 @@ TEST(ArmTravel, LawsHoldForAThousandSeams) {
         cells[i] = cell_with(std::string(kArmNames[i]), Isometry3d::Identity());
     }
     int made = 0, turned = 0, refused = 0;
-    for (int k = 0; k < 1000; ++k) {
+    for (int k = 0; k < 200; ++k) {
         ArmCell& cell = cells[static_cast<std::size_t>(k) % cells.size()];
         const double round = uniform(-kPi, kPi), out = uniform(600, 950);
         cell.base_from_scan = Eigen::Translation3d(out * std::cos(round), out * std::sin(round), uniform(0, 450)) *
@@ -177,9 +180,9 @@ TEST(ArmTravel, LawsHoldForAThousandSeams) {
         EXPECT_NEAR(with.duration_s, without.duration_s, 1e-6);
     }
     std::cout << made << " made, " << turned << " of them with the torch turned, " << refused << " refused\n";
-    EXPECT_GT(made, 500);
-    EXPECT_GT(turned, 100);
-    EXPECT_GT(refused, 50);
+    EXPECT_GT(made, 100);
+    EXPECT_GT(turned, 20);
+    EXPECT_GT(refused, 10);
 }
 
 TEST(ArmTravel, SaysWhereItFailsAndWhatWouldHelp) {
