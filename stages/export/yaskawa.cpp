@@ -191,36 +191,7 @@ std::vector<std::string> problems(const ExportOptions& options) {
 }
 
 std::vector<TextFile> write(const Program& program, const ExportOptions& options) {
-    const std::vector<Target>& all = program.targets;
-    std::string name = options.program_name;
-    for (char& c : name) {
-        c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    }
-    Writer head(all, options);
-    set_up(head, program, options);
-    const std::vector<Section> welds = welds_of(all);
-    std::vector<std::size_t> lines;
-    for (const Section& weld : welds) {
-        Writer writer(all, options);
-        writer.write(weld);
-        lines.push_back(writer.lines);
-    }
-    const std::vector<Section> parts = parts_of(all, welds, lines, head.lines, kMaxLines, "yaskawa");
-    if (parts.size() == 1) {
-        head.write(parts.front());
-        return {file(name, head, options)};
-    }
-    std::vector<TextFile> files(1);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const std::string part = name + "_" + std::to_string(i);
-        head.line("CALL JOB:" + part);
-        Writer writer(all, options);
-        set_up(writer, program, options);
-        writer.write(parts[i]);
-        files.push_back(file(part, writer, options));
-    }
-    files.front() = file(name, head, options);
-    return files;
+    return jobs<Writer>(program, options, {kMaxLines, "yaskawa", "CALL JOB:"}, set_up, file);
 }
 
 }  // namespace
