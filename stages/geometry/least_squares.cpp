@@ -99,7 +99,8 @@ bool gauss_newton(S& shape, Points points, double length, const Linearise& linea
         return sum;
     };
     const auto rows = static_cast<Eigen::Index>(R * points.size());
-    Eigen::Matrix<double, Eigen::Dynamic, N> J(rows, N);
+    // Of dynamic size, for one decomposition instead of four in the compiled program.
+    Eigen::MatrixXd J(rows, N);
     Eigen::VectorXd d(rows);
     double before = squares(shape);
     for (int round = 0; round < kMostRounds; ++round) {
@@ -108,7 +109,7 @@ bool gauss_newton(S& shape, Points points, double length, const Linearise& linea
             J.template middleRows<R>(static_cast<Eigen::Index>(R * i)) = row.by;
             d.template segment<R>(static_cast<Eigen::Index>(R * i)) = row.distance;
         }
-        const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, N>> qr(J);
+        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(J);
         const auto pivots = qr.matrixR().diagonal().cwiseAbs();
         if (rows < N || !(pivots[N - 1] > kWeak * pivots[0])) {
             return false;
