@@ -213,25 +213,9 @@ TEST(Brands, WeldsAsEachBrandWritesThem) {
     }
 }
 
-// Seams of many points that no arc or longer line can stand for.
+// Of many points that no arc or longer line can stand for.
 Plan rough_plan(int seams, int points) {
-    std::vector<Waypoint> waypoints;
-    const Eigen::Quaterniond down(0, 1, 0, 0);
-    for (int seam = 0; seam < seams; ++seam) {
-        const Eigen::Vector3d start(0, 20 * seam, 0);
-        waypoints.push_back(
-            test::waypoint(seam, WaypointKind::approach, 0, start + Eigen::Vector3d(0, 0, 30), down, 100));
-        for (int k = 0; k < points; ++k) {
-            const auto kind = k == 0            ? WaypointKind::weld_start
-                              : k == points - 1 ? WaypointKind::weld_end
-                                                : WaypointKind::weld;
-            waypoints.push_back(
-                test::waypoint(seam, kind, k, start + Eigen::Vector3d(0.5 * k, 0.5 * (k % 2), 0), down, 8));
-        }
-        waypoints.push_back(test::waypoint(seam, WaypointKind::retract, points,
-                                           start + Eigen::Vector3d(0.5 * points, 0, 30), down, 100));
-    }
-    return test::finished(waypoints);
+    return test::side_by_side(seams, points, [](int k) { return Eigen::Vector3d(0.5 * k, 0.5 * (k % 2), 0); });
 }
 
 TEST(Brands, SplitLongProgramsBetweenWelds) {

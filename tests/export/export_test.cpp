@@ -323,22 +323,7 @@ TEST(Export, AbbQuaternionsKeepTheirSideAlongAWeld) {
 }
 
 Plan long_plan(int seams, int points) {
-    std::vector<Waypoint> waypoints;
-    const Eigen::Quaterniond down(0, 1, 0, 0);
-    for (int seam = 0; seam < seams; ++seam) {
-        const Eigen::Vector3d start(0, 20 * seam, 0);
-        waypoints.push_back(
-            test::waypoint(seam, WaypointKind::approach, 0, start + Eigen::Vector3d(0, 0, 30), down, 100));
-        for (int k = 0; k < points; ++k) {
-            const auto kind = k == 0            ? WaypointKind::weld_start
-                              : k == points - 1 ? WaypointKind::weld_end
-                                                : WaypointKind::weld;
-            waypoints.push_back(test::waypoint(seam, kind, k, start + Eigen::Vector3d(k, 0, 0), down, 8));
-        }
-        waypoints.push_back(
-            test::waypoint(seam, WaypointKind::retract, points, start + Eigen::Vector3d(points, 0, 30), down, 100));
-    }
-    return test::finished(waypoints);
+    return test::side_by_side(seams, points, [](int k) { return Eigen::Vector3d(k, 0, 0); });
 }
 
 TEST(Export, AbbSplitsLongProgramsBetweenSeams) {

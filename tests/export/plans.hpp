@@ -127,6 +127,27 @@ inline ExportOptions arc_options() {
     return options;
 }
 
+/// Seams of as many weld points each, 20 mm apart, torch down; `at` gives the k-th point of a seam from its start, mm.
+template <class At>
+Plan side_by_side(int seams, int points, At&& at) {
+    std::vector<Waypoint> waypoints;
+    const Eigen::Quaterniond down(0, 1, 0, 0);
+    const Eigen::Vector3d above(0, 0, 30);
+    for (int seam = 0; seam < seams; ++seam) {
+        const Eigen::Vector3d start(0, 20 * seam, 0);
+        waypoints.push_back(waypoint(seam, WaypointKind::approach, 0, start + above, down, 100));
+        for (int k = 0; k < points; ++k) {
+            const auto kind = k == 0            ? WaypointKind::weld_start
+                              : k == points - 1 ? WaypointKind::weld_end
+                                                : WaypointKind::weld;
+            waypoints.push_back(waypoint(seam, kind, k, start + at(k), down, 8));
+        }
+        const Eigen::Vector3d end = start + at(points);
+        waypoints.push_back(waypoint(seam, WaypointKind::retract, points, end + above, down, 100));
+    }
+    return finished(waypoints);
+}
+
 inline double at_random(std::mt19937_64& generator, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(generator);
 }
