@@ -44,23 +44,23 @@ CourseLine::Point CourseLine::at(double x) const {
     return {};
 }
 
-Shape CourseLine::flank(double across, double z, double bevel, double side) const {
+SceneShape CourseLine::flank(double across, double z, double bevel, double side) const {
     const auto [s, c] = portable::sincos(bevel);
     if (kind_ == Course::s_curve) {
         ensure(across == 0 && bevel == 0, "walls along an S-curve are upright and on the line");
         return SineWall{amplitude_, wave_number_, 0, side};
     }
     if (kind_ == Course::straight) {
-        return Plane{{0, across, z}, {0, side * c, s}};
+        return PlaneShape{{0, across, z}, {0, side * c, s}};
     }
     const double radius = radius_ + across;
     if (bevel == 0) {
-        return Cylinder{{0, centre_, 0}, Vector3d::UnitZ(), radius, side};
+        return CylinderShape{{0, centre_, 0}, Vector3d::UnitZ(), radius, side};
     }
     // The radius grows by -side tan(bevel) per mm of height: a cone that opens downwards or upwards.
     const double opens = side * s < 0 ? 1 : -1;
     require(radius > 0, "an arc of radius " + shortest(radius_) + " mm is too small for the part; make it larger");
-    return Cone{{0, centre_, z - opens * radius * c / std::abs(s)}, {0, 0, opens}, std::abs(s), c, side};
+    return ConeShape{{0, centre_, z - opens * radius * c / std::abs(s)}, {0, 0, opens}, std::abs(s), c, side};
 }
 
 }  // namespace seampath

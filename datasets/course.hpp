@@ -24,8 +24,8 @@ public:
     /// Surface through what lies `across` from the line at the height z, with the material on the right for side = +1,
     /// on the left for side = -1. It leans back by `bevel` (rad) from the upright, so that it faces up for bevel > 0.
     /// Arcs and straight lines only, unless bevel and across are 0.
-    Shape flank(double across, double z, double bevel, double side) const;
-    Shape wall(double across, double side) const { return flank(across, 0, 0, side); }
+    SceneShape flank(double across, double z, double bevel, double side) const;
+    SceneShape wall(double across, double side) const { return flank(across, 0, 0, side); }
 
     double half_length() const { return half_length_; }
     double reach() const { return reach_; }  ///< largest |y| of the line

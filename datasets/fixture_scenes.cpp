@@ -10,7 +10,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-enum Stream : std::uint64_t { kPose = 900, kBalls, kClutter, kMoved };
+enum FixtureStream : std::uint64_t { kFixturePose = 900, kFixtureBalls, kFixtureClutter, kFixtureMoved };
 
 /// A scan in the making, seen along `sight` (unit, away from the sensor).
 class Exposure {
@@ -98,7 +98,8 @@ void add_ball_clutter(Exposure& exposure, const BallScene& scene, const Vector3d
 }  // namespace
 
 FixtureScan make_ball_scan(const BallScene& scene, std::uint64_t seed) {
-    Draws placing(seed, kPose), balls(seed, kBalls), clutter(seed, kClutter), moving(seed, kMoved);
+    Draws placing(seed, kFixturePose), balls(seed, kFixtureBalls), clutter(seed, kFixtureClutter),
+        moving(seed, kFixtureMoved);
     FixtureScan made;
     made.base_from_part = placing.pose(800);
     const Vector3d sight = (Vector3d(0, 0, -1) + 0.3 * placing.direction()).normalized();

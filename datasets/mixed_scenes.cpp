@@ -53,15 +53,15 @@ Scene make_plain(const SceneOptions& o) {
     const double radius = *o.radius_mm;
     const double edge = -half_x / 3;
     const auto hole = [&](double at_x, double at_y) {
-        return Cylinder{{at_x, at_y, 0}, Vector3d::UnitZ(), radius, -1};
+        return CylinderShape{{at_x, at_y, 0}, Vector3d::UnitZ(), radius, -1};
     };
-    const std::vector<Shape> high_holes{hole(-2 * half_x / 3, half_y / 2), hole(-2 * half_x / 3, -half_y / 2)};
-    const Shape low_hole = hole(half_x / 12, -half_y / 2);
-    const Cylinder boss{{half_x / 2, half_y / 6, 0}, Vector3d::UnitZ(), 2.5 * radius};
-    const Shape boss_hole = Cylinder{boss.p, boss.axis, radius, -1};
+    const std::vector<SceneShape> high_holes{hole(-2 * half_x / 3, half_y / 2), hole(-2 * half_x / 3, -half_y / 2)};
+    const SceneShape low_hole = hole(half_x / 12, -half_y / 2);
+    const CylinderShape boss{{half_x / 2, half_y / 6, 0}, Vector3d::UnitZ(), 2.5 * radius};
+    const SceneShape boss_hole = CylinderShape{boss.p, boss.axis, radius, -1};
     require(boss.radius < std::min(half_x / 3, half_y / 2),
             "holes of radius " + shortest(radius) + " mm do not fit the plate; make radius_mm smaller");
-    const auto drilled = [](std::vector<Shape> faces, const std::vector<Shape>& holes) {
+    const auto drilled = [](std::vector<SceneShape> faces, const std::vector<SceneShape>& holes) {
         faces.insert(faces.end(), holes.begin(), holes.end());
         return faces;
     };
@@ -73,8 +73,8 @@ Scene make_plain(const SceneOptions& o) {
     add_solid(scene, drilled(drilled(block_faces({-half_x, -half_y, under}, {half_x, half_y, 0}), high_holes),
                              {low_hole, boss_hole}));
     add_solid(scene, drilled(block_faces({-half_x, -half_y, under}, {edge, half_y, step}), high_holes));
-    add_solid(scene,
-              {boss, Plane{{0, 0, step}, Vector3d::UnitZ()}, Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, boss_hole});
+    add_solid(scene, {boss, PlaneShape{{0, 0, step}, Vector3d::UnitZ()},
+                      PlaneShape{Vector3d::Zero(), -Vector3d::UnitZ()}, boss_hole});
     return scene;
 }
 

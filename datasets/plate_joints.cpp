@@ -21,10 +21,10 @@ struct Range {
 };
 
 /// A plate between the course's ends, within the range and inside the flanks.
-void add_plate_along(Scene& scene, const CourseLine& course, const Range& range, std::vector<Shape> flanks) {
+void add_plate_along(Scene& scene, const CourseLine& course, const Range& range, std::vector<SceneShape> flanks) {
     const Vector3d low(-course.half_length(), range.low_y, range.low_z);
     const Vector3d high(course.half_length(), range.high_y, range.high_z);
-    for (const Shape& face : block_faces(low, high)) {
+    for (const SceneShape& face : block_faces(low, high)) {
         flanks.push_back(face);
     }
     add_solid(scene, flanks);
@@ -75,7 +75,7 @@ void add_groove_plates(Scene& scene, const CourseLine& course, const SceneOption
         const double across = -side * *o.gap_mm / 2;
         require(course.reach() + plate.widening() + *o.gap_mm / 2 < outer,
                 "the groove is wider than its plates; make margin_mm larger than " + shortest(*o.margin_mm));
-        std::vector<Shape> flanks{course.wall(across, side)};
+        std::vector<SceneShape> flanks{course.wall(across, side)};
         if (plate.bevel > 0) {
             flanks.push_back(course.flank(across, plate.lower_end, plate.bevel, side));
         }
@@ -180,7 +180,7 @@ Scene make_corner(const SceneOptions& o) {
     const double spread = std::abs(height * s / c) + *o.thickness_mm / c + kBeyond;
     require(*o.margin_mm > *o.thickness_mm / c, "a level plate of " + shortest(*o.margin_mm) +
                                                     " mm is no wider than the other is thick; make margin_mm larger");
-    const Shape outer = course.flank(0, 0, lean, 1);
+    const SceneShape outer = course.flank(0, 0, lean, 1);
     Scene scene;
     add_plate_along(scene, course, {-course.reach() - *o.margin_mm, course.reach() + spread, -*o.plate_thickness_mm, 0},
                     {outer});

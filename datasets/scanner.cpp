@@ -18,7 +18,18 @@ using portable::radians;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Streams of random numbers; those of view v are kPerView * (v + 1) further on.
-enum Stream : std::uint64_t { kPlacing = 10, kScale, kNoise, kDropout, kBlobs, kMixed, kFlying, kGhosts, kPath, kPose };
+enum ScanStream : std::uint64_t {
+    kPlacing = 10,
+    kScale,
+    kNoise,
+    kDropout,
+    kBlobs,
+    kMixed,
+    kFlying,
+    kGhosts,
+    kPath,
+    kPose
+};
 constexpr std::uint64_t kPerView = 100;
 
 constexpr double kWidestCosine = 0.2;  // noise grows with 1/cos(incidence) up to 1/0.2
@@ -95,9 +106,9 @@ Eigen::Affine3d view_error(const Vector3d& centre, const ScannerOptions& o, std:
 }
 
 /// One view in the making: what its pixels truly see, and the random numbers that spoil it.
-class Exposure {
+class ViewExposure {
 public:
-    Exposure(const Scene& scene, const ScannerOptions& o, std::uint64_t seed, int index, unsigned threads)
+    ViewExposure(const Scene& scene, const ScannerOptions& o, std::uint64_t seed, int index, unsigned threads)
         : scene_(scene),
           o_(o),
           seed_(seed),
@@ -131,7 +142,7 @@ public:
     }
 
 private:
-    Random random(Stream stream) const { return {seed_, stream + kPerView * (view_ + 1)}; }
+    Random random(ScanStream stream) const { return {seed_, stream + kPerView * (view_ + 1)}; }
 
     double sigma(const Sight& sight) const {
         const double far = sight.depth / o_.working_distance_mm;
@@ -226,7 +237,7 @@ private:
 }  // namespace
 
 View take_view(const Scene& scene, const ScannerOptions& options, std::uint64_t seed, int index, unsigned threads) {
-    return Exposure(scene, options, seed, index, threads).develop(threads);
+    return ViewExposure(scene, options, seed, index, threads).develop(threads);
 }
 
 }  // namespace seampath

@@ -20,19 +20,19 @@ void require(bool holds, const std::string& what) {
     }
 }
 
-void add_solid(Scene& scene, const std::vector<Shape>& faces) {
+void add_solid(Scene& scene, const std::vector<SceneShape>& faces) {
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        std::vector<Shape> others = faces;
+        std::vector<SceneShape> others = faces;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
         scene.surfaces.push_back({faces[i], std::move(others)});
     }
 }
 
-std::vector<Shape> block_faces(const Vector3d& low, const Vector3d& high) {
-    std::vector<Shape> faces;
+std::vector<SceneShape> block_faces(const Vector3d& low, const Vector3d& high) {
+    std::vector<SceneShape> faces;
     for (int axis = 0; axis < 3; ++axis) {
-        faces.emplace_back(Plane{high, Vector3d::Unit(axis)});
-        faces.emplace_back(Plane{low, -Vector3d::Unit(axis)});
+        faces.emplace_back(PlaneShape{high, Vector3d::Unit(axis)});
+        faces.emplace_back(PlaneShape{low, -Vector3d::Unit(axis)});
     }
     return faces;
 }
@@ -43,9 +43,9 @@ void add_block(Scene& scene, const Vector3d& low, const Vector3d& high) {
     scene.box.extend(high);
 }
 
-void add_bar(Scene& scene, const Cylinder& cylinder, double length) {
+void add_bar(Scene& scene, const CylinderShape& cylinder, double length) {
     const Vector3d end = cylinder.p + length * cylinder.axis;
-    add_solid(scene, {cylinder, Plane{end, cylinder.axis}, Plane{cylinder.p, -cylinder.axis}});
+    add_solid(scene, {cylinder, PlaneShape{end, cylinder.axis}, PlaneShape{cylinder.p, -cylinder.axis}});
     const Vector3d reach = cylinder.radius * (Vector3d::Ones() - cylinder.axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
     for (const Vector3d& centre : {cylinder.p, end}) {
         scene.box.extend(centre - reach);

@@ -15,15 +15,15 @@ namespace seampath {
 void require(bool holds, const std::string& what);
 
 /// A solid is what lies inside all its faces. The caller extends the scene's box.
-void add_solid(Scene& scene, const std::vector<Shape>& faces);
+void add_solid(Scene& scene, const std::vector<SceneShape>& faces);
 
 /// The six faces of a block.
-std::vector<Shape> block_faces(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+std::vector<SceneShape> block_faces(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
 void add_block(Scene& scene, const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
 /// A round bar from s = 0 to s = length along the axis.
-void add_bar(Scene& scene, const Cylinder& cylinder, double length);
+void add_bar(Scene& scene, const CylinderShape& cylinder, double length);
 
 /// Top at z = 0, around the origin.
 void add_plate(Scene& scene, double half_x, double half_y, const SceneOptions& o);

@@ -23,10 +23,10 @@ Scene make_tee(const SceneOptions& o) {
     const double half_thickness = *o.thickness_mm / 2;
     Scene scene;
     add_plate(scene, half_length, half_thickness / c + *o.margin_mm, o);
-    add_solid(scene,
-              {Plane{half_thickness * side, side}, Plane{-half_thickness * side, -side}, Plane{*o.height_mm * up, up},
-               Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, Plane{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
-               Plane{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
+    add_solid(scene, {PlaneShape{half_thickness * side, side}, PlaneShape{-half_thickness * side, -side},
+                      PlaneShape{*o.height_mm * up, up}, PlaneShape{Vector3d::Zero(), -Vector3d::UnitZ()},
+                      PlaneShape{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
+                      PlaneShape{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
     scene.front = Vector3d::UnitY();
     for (const double sign : {1.0, -1.0}) {
         scene.box.extend(*o.height_mm * up + sign * half_thickness * side);
@@ -48,10 +48,10 @@ Scene make_s_curve(const SceneOptions& o) {
     add_plate(scene, half_length, reach + *o.margin_mm, o);
     const SineWall left{*o.amplitude_mm, wave_number, half_thickness, 1};
     const SineWall right{*o.amplitude_mm, wave_number, -half_thickness, -1};
-    add_solid(scene,
-              {left, right, Plane{*o.height_mm * Vector3d::UnitZ(), Vector3d::UnitZ()},
-               Plane{Vector3d::Zero(), -Vector3d::UnitZ()}, Plane{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
-               Plane{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
+    add_solid(scene, {left, right, PlaneShape{*o.height_mm * Vector3d::UnitZ(), Vector3d::UnitZ()},
+                      PlaneShape{Vector3d::Zero(), -Vector3d::UnitZ()},
+                      PlaneShape{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
+                      PlaneShape{-half_length * Vector3d::UnitX(), -Vector3d::UnitX()}});
     scene.box.extend(Vector3d(0, 0, *o.height_mm));
     scene.front = Vector3d::UnitY();
     for (const SineWall& wall : {left, right}) {
@@ -137,9 +137,9 @@ Scene make_pipe_on_plate(const SceneOptions& o) {
     add_plate(scene, branch.radius / branch.cos_lean + *o.margin_mm, branch.radius + *o.margin_mm, o);
     // The bar's flat lower end must stay within the plate, so the plate's top cuts it.
     const double length = *o.height_mm + branch.radius * std::abs(tan_lean);
-    const Cylinder cylinder{Vector3d::Zero(), branch.axis(), branch.radius};
-    add_solid(scene,
-              {cylinder, Plane{length * branch.axis(), branch.axis()}, Plane{Vector3d::Zero(), -Vector3d::UnitZ()}});
+    const CylinderShape cylinder{Vector3d::Zero(), branch.axis(), branch.radius};
+    add_solid(scene, {cylinder, PlaneShape{length * branch.axis(), branch.axis()},
+                      PlaneShape{Vector3d::Zero(), -Vector3d::UnitZ()}});
     const Vector3d end = length * branch.axis();
     scene.box.extend(
         end + Vector3d(branch.radius * branch.cos_lean, branch.radius, branch.radius * std::abs(branch.sin_lean)));

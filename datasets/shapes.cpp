@@ -12,22 +12,22 @@ using Eigen::Vector3d;
 
 constexpr double kEdgeSlack = 1e-9;  // mm by which neighbouring faces overlap, so that no ray slips between them
 
-double value(const Plane& plane, const Vector3d& p) {
+double value(const PlaneShape& plane, const Vector3d& p) {
     return plane.n.dot(p - plane.p);
 }
 
-double value(const Cylinder& cylinder, const Vector3d& p) {
+double value(const CylinderShape& cylinder, const Vector3d& p) {
     const Vector3d d = p - cylinder.p;
     return cylinder.side * ((d - d.dot(cylinder.axis) * cylinder.axis).norm() - cylinder.radius);
 }
 
-double value(const Cone& cone, const Vector3d& p) {
+double value(const ConeShape& cone, const Vector3d& p) {
     const Vector3d d = p - cone.p;
     const double s = d.dot(cone.axis);
     return cone.side * ((d - s * cone.axis).norm() * cone.cos - s * cone.sin);
 }
 
-double value(const Sphere& sphere, const Vector3d& p) {
+double value(const SphereShape& sphere, const Vector3d& p) {
     return (p - sphere.p).norm() - sphere.radius;
 }
 
@@ -35,22 +35,22 @@ double value(const SineWall& wall, const Vector3d& p) {
     return wall.side * (p.y() - wall.offset - wall.amplitude * portable::sin(wall.wave_number * p.x()));
 }
 
-Vector3d normal_of(const Plane& plane, const Vector3d&) {
+Vector3d normal_of(const PlaneShape& plane, const Vector3d&) {
     return plane.n;
 }
 
-Vector3d normal_of(const Cylinder& cylinder, const Vector3d& p) {
+Vector3d normal_of(const CylinderShape& cylinder, const Vector3d& p) {
     const Vector3d d = p - cylinder.p;
     return cylinder.side * (d - d.dot(cylinder.axis) * cylinder.axis).normalized();
 }
 
-Vector3d normal_of(const Cone& cone, const Vector3d& p) {
+Vector3d normal_of(const ConeShape& cone, const Vector3d& p) {
     const Vector3d d = p - cone.p;
     const Vector3d radial = (d - d.dot(cone.axis) * cone.axis).normalized();
     return cone.side * (cone.cos * radial - cone.sin * cone.axis);
 }
 
-Vector3d normal_of(const Sphere& sphere, const Vector3d& p) {
+Vector3d normal_of(const SphereShape& sphere, const Vector3d& p) {
     return (p - sphere.p).normalized();
 }
 
@@ -61,7 +61,7 @@ Vector3d normal_of(const SineWall& wall, const Vector3d& p) {
 
 bool is_inside(const Surface& surface, const Vector3d& p) {
     return std::all_of(surface.inside_of.begin(), surface.inside_of.end(),
-                       [&](const Shape& shape) { return signed_value(shape, p) <= kEdgeSlack; });
+                       [&](const SceneShape& shape) { return signed_value(shape, p) <= kEdgeSlack; });
 }
 
 /// Takes crossings in ascending order until one lies on the kept part of the surface, between 0 and the nearest so far.
@@ -82,12 +82,12 @@ private:
     double t_;
 };
 
-bool cross(const Plane& plane, const Surface& surface, const Ray& ray, Nearest& nearest) {
+bool cross(const PlaneShape& plane, const Surface& surface, const Ray& ray, Nearest& nearest) {
     const double slope = plane.n.dot(ray.direction);
     return slope != 0 && nearest.offer(surface, plane.n.dot(plane.p - ray.origin) / slope);
 }
 
-bool cross(const Cylinder& cylinder, const Surface& surface, const Ray& ray, Nearest& nearest) {
+bool cross(const CylinderShape& cylinder, const Surface& surface, const Ray& ray, Nearest& nearest) {
     const Vector3d from_axis = ray.origin - cylinder.p;
     const Vector3d o = from_axis - from_axis.dot(cylinder.axis) * cylinder.axis;
     const Vector3d d = ray.direction - ray.direction.dot(cylinder.axis) * cylinder.axis;
@@ -107,7 +107,7 @@ bool cross(const Cylinder& cylinder, const Surface& surface, const Ray& ray, Nea
 
 /// With r the distance from the axis and s the way along it, r^2 cos^2 - s^2 sin^2 = a t^2 + 2 b t + c; of its roots,
 /// those on the other nappe (s < 0) are none of the cone's.
-bool cross(const Cone& cone, const Surface& surface, const Ray& ray, Nearest& nearest) {
+bool cross(const ConeShape& cone, const Surface& surface, const Ray& ray, Nearest& nearest) {
     // From the point of the ray nearest to the apex: no cancellation however far the origin lies.
     const double middle = (cone.p - ray.origin).dot(ray.direction);
     const Vector3d o = ray.origin + middle * ray.direction - cone.p;
@@ -135,7 +135,7 @@ bool cross(const Cone& cone, const Surface& surface, const Ray& ray, Nearest& ne
     return hit;
 }
 
-bool cross(const Sphere& sphere, const Surface& surface, const Ray& ray, Nearest& nearest) {
+bool cross(const SphereShape& sphere, const Surface& surface, const Ray& ray, Nearest& nearest) {
     const double middle = (sphere.p - ray.origin).dot(ray.direction);
     const double square =
         sphere.radius * sphere.radius - (ray.origin + middle * ray.direction - sphere.p).squaredNorm();
@@ -188,7 +188,7 @@ struct Piece {
     double end;
 
     /// Keeps what lies before the plane, plus a little so that a crossing on the plane itself is not lost.
-    void keep_behind(const Plane& plane, const Ray& ray) {
+    void keep_behind(const PlaneShape& plane, const Ray& ray) {
         const double kSlack = 1e-6;  // mm
         const double slope = plane.n.dot(ray.direction);
         const double t = plane.n.dot(plane.p - ray.origin) / slope;
@@ -232,8 +232,8 @@ bool cross(const SineWall& wall, const Surface& surface, const Ray& ray, Nearest
     const Vector3d middle(0, wall.offset, 0);
     piece.keep_behind({middle + reach, Vector3d::UnitY()}, ray);
     piece.keep_behind({middle - reach, -Vector3d::UnitY()}, ray);
-    for (const Shape& shape : surface.inside_of) {
-        if (const Plane* plane = std::get_if<Plane>(&shape)) {
+    for (const SceneShape& shape : surface.inside_of) {
+        if (const PlaneShape* plane = std::get_if<PlaneShape>(&shape)) {
             piece.keep_behind(*plane, ray);
         }
     }
@@ -253,11 +253,11 @@ bool cross(const SineWall& wall, const Surface& surface, const Ray& ray, Nearest
 
 }  // namespace
 
-double signed_value(const Shape& shape, const Eigen::Vector3d& p) {
+double signed_value(const SceneShape& shape, const Eigen::Vector3d& p) {
     return std::visit([&](const auto& s) { return value(s, p); }, shape);
 }
 
-Eigen::Vector3d normal(const Shape& shape, const Eigen::Vector3d& p) {
+Eigen::Vector3d normal(const SceneShape& shape, const Eigen::Vector3d& p) {
     return std::visit([&](const auto& s) { return normal_of(s, p); }, shape);
 }
 

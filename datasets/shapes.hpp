@@ -7,18 +7,18 @@
 #include <Eigen/Core>
 
 /// Exact surfaces and their intersection with rays. A part is a list of surfaces that bound closed solids; a new joint
-/// kind is a new list, a new kind of surface one more alternative of `Shape`.
+/// kind is a new list, a new kind of surface one more alternative of `SceneShape`.
 namespace seampath {
 
 /// Plane through p; n is unit and points out of the material, as does the normal of every shape.
-struct Plane {
+struct PlaneShape {
     Eigen::Vector3d p;
     Eigen::Vector3d n;
 };
 
 /// Around the line p + s axis (axis unit); the material lies inside for side = +1 (a bar), outside for side = -1 (a
 /// bore).
-struct Cylinder {
+struct CylinderShape {
     Eigen::Vector3d p;
     Eigen::Vector3d axis;
     double radius;
@@ -27,14 +27,14 @@ struct Cylinder {
 
 /// From the apex p along the axis (unit), by the half-angle with this sine and cosine; the material lies inside for
 /// side = +1, outside for side = -1.
-struct Cone {
+struct ConeShape {
     Eigen::Vector3d p;
     Eigen::Vector3d axis;
     double sin, cos;
     double side = 1;
 };
 
-struct Sphere {
+struct SphereShape {
     Eigen::Vector3d p;
     double radius;
 };
@@ -48,21 +48,21 @@ struct SineWall {
     double side;
 };
 
-using Shape = std::variant<Plane, Cylinder, Cone, Sphere, SineWall>;
+using SceneShape = std::variant<PlaneShape, CylinderShape, ConeShape, SphereShape, SineWall>;
 
 /// Keeps what lies on the inner side of the shape.
 struct Surface {
-    Shape shape;
-    std::vector<Shape> inside_of;  ///< the surface ends where it leaves one of these
+    SceneShape shape;
+    std::vector<SceneShape> inside_of;  ///< the surface ends where it leaves one of these
 };
 
 /// Signed value that vanishes on the shape and is positive outside the material, mm. It is the distance from the
 /// surface, except from a sine wall (the distance along y) and before a cone's apex (the distance from the cone's
 /// lines, drawn out).
-double signed_value(const Shape& shape, const Eigen::Vector3d& p);
+double signed_value(const SceneShape& shape, const Eigen::Vector3d& p);
 
 /// Unit normal, out of the material, at a point of the shape.
-Eigen::Vector3d normal(const Shape& shape, const Eigen::Vector3d& p);
+Eigen::Vector3d normal(const SceneShape& shape, const Eigen::Vector3d& p);
 
 struct Ray {
     Eigen::Vector3d origin;

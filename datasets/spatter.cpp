@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-enum Stream : std::uint64_t { kBalls = 3, kTacks = 4 };  // of spatter_seed
+enum SpatterStream : std::uint64_t { kBalls = 3, kTacks = 4 };  // of spatter_seed
 
 constexpr double kSmallestRadius = 0.15;  // mm
 constexpr double kLargestRadius = 1.5;    // mm
@@ -21,7 +21,7 @@ double length(const TruthSeam& seam) {
 }
 
 void add_ball(Scene& scene, const Vector3d& centre, double radius) {
-    add_solid(scene, {Sphere{centre, radius}});
+    add_solid(scene, {SphereShape{centre, radius}});
     scene.box.extend(Vector3d(centre - Vector3d::Constant(radius)));
     scene.box.extend(Vector3d(centre + Vector3d::Constant(radius)));
 }

@@ -11,7 +11,7 @@
 namespace seampath {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxPointBytes = std::size_t{4} << 20;
 constexpr std::array<std::string_view, 3> kUnits{"mm", "m", "inch"};
 constexpr std::array<double, 3> kMmPerUnit{1, 1000, 25.4};
 
@@ -35,9 +35,9 @@ std::vector<std::string_view> cells_of(std::string_view row) {
     }
 }
 
-class Reader {
+class PointReader {
 public:
-    Reader(std::string file, double sigma_mm) : file_(std::move(file)), sigma_mm_(sigma_mm) {}
+    PointReader(std::string file, double sigma_mm) : file_(std::move(file)), sigma_mm_(sigma_mm) {}
 
     std::vector<TouchedRow> read(std::string_view text) {
         while (!text.empty()) {
@@ -135,7 +135,7 @@ private:
 }  // namespace
 
 std::vector<TouchedRow> read_touched_points(const std::filesystem::path& file, double sigma_mm) {
-    return Reader(file.string(), sigma_mm).read(read_file(file, kMaxBytes, "points"));
+    return PointReader(file.string(), sigma_mm).read(read_file(file, kMaxPointBytes, "points"));
 }
 
 }  // namespace seampath

@@ -1,4 +1,3 @@
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -6,6 +5,7 @@
 #include "pipeline/fixture_calibration.hpp"
 #include "pipeline/json_text.hpp"
 #include "pipeline/text.hpp"
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/text.hpp"
 
@@ -16,8 +16,7 @@ using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxResultBytes = std::size_t{16} << 20;
 constexpr const char* kKind = "fixture calibration";
 
 Json vector_json(const Vector3d& v) {
@@ -166,7 +165,7 @@ std::string fixture_result_json(const FixtureCalibration& c) {
 
 StoredFixture read_fixture_result(const std::filesystem::path& file) {
     try {
-        const Json json = parse_json(read_file(file, kMaxBytes, "calibrate"));
+        const Json json = parse_json(read_file(file, kMaxResultBytes, "calibrate"));
         StoredFixture s;
         if (json.at("kind") != kKind) {
             throw InputError("");

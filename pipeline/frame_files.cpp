@@ -4,10 +4,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/pose.hpp"
 #include "stages/geometry/rigid.hpp"
@@ -21,8 +21,6 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// a, b, c with R = Rz(a) Ry(b) Rx(c), rad, b within +-90 degrees; at its ends c is 0.
 Vector3d zyx_angles(const Matrix3d& R) {

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "stages/angle.hpp"
 #include "stages/types.hpp"
 
 /// The numbers of a groove's section as tables, plots and reports show them.
@@ -18,7 +19,6 @@ struct GrooveColumn {
     double per_unit;  ///< of the unit that is shown, per that of the number
 };
 
-inline constexpr double kDegreesPerRadian = 57.29577951308232;
 inline constexpr std::array<GrooveColumn, 8> kGrooveColumns{{
     {"gap", "mm", "mm", "Root gap", &GrooveStation::gap_mm, 1},
     {"mismatch", "mm", "mm", "Height mismatch", &GrooveStation::mismatch_mm, 1},

@@ -13,7 +13,7 @@
 namespace seampath {
 namespace {
 
-constexpr double kWide = 1180, kWideHeight = 250, kNarrow = 390, kNarrowHeight = 220;
+constexpr double kWide = 1180, kWideHeight = 250, kNarrowPlot = 390, kNarrowHeight = 220;
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCurvatureSamples = 600;
 constexpr int kBins = 40;
@@ -117,7 +117,7 @@ std::string histogram(const Deviation& deviation) {
         share[bin] += 100.0 / static_cast<double>(distances.size());
     }
     const double top = padded(*std::max_element(share.begin(), share.end()), 1);
-    const PlotAxes axes{kNarrow, kNarrowHeight, 0, reach, 0, top, "deviation, mm", "share of samples, %"};
+    const PlotAxes axes{kNarrowPlot, kNarrowHeight, 0, reach, 0, top, "deviation, mm", "share of samples, %"};
     std::string svg = svg_axes(axes, "Histogram of the deviation");
     for (int k = 0; k < kBins; ++k) {
         const double low = reach * k / kBins, high = reach * (k + 1) / kBins;
@@ -152,7 +152,7 @@ std::string curvature_plot(const SeamModel& model, const std::vector<Eigen::Vect
         const double u = nearest_parameter(model.curve, node);
         dots.push_back({arc.station(u), curvature(model.curve, u)});
     }
-    const PlotAxes axes{kNarrow,       kNarrowHeight,    0, arc.length(), 0, padded(most, kLeastCurvature),
+    const PlotAxes axes{kNarrowPlot,   kNarrowHeight,    0, arc.length(), 0, padded(most, kLeastCurvature),
                         "station, mm", "curvature, 1/mm"};
     return figure("", nodes.empty() ? "<b>Curvature</b>" : "<b>Curvature</b> and the nodes that carry the shape",
                   svg_axes(axes, nodes.empty() ? "Curvature of the seam" : "Curvature of the seam with its nodes") +
@@ -181,7 +181,7 @@ std::string groove_plot(const Seam& seam, const GrooveColumn& column) {
     constexpr double kLeastRange = 0.1;  // of the unit; noise that is far below it should look small
     const double middle = 0.5 * (least + most), half = padded(0.5 * (most - least), 0.5 * kLeastRange);
     const std::string label(column.label), unit(column.shown_unit);
-    const PlotAxes axes{kNarrow,       kNarrowHeight,      0, std::max(station, 1e-3), middle - half, middle + half,
+    const PlotAxes axes{kNarrowPlot,   kNarrowHeight,      0, std::max(station, 1e-3), middle - half, middle + half,
                         "station, mm", label + ", " + unit};
     return figure("", "<b>" + label + "</b>, with ±1σ",
                   svg_axes(axes, label + " along the seam") + svg_band(axes, low, high, "sigma") +
@@ -232,7 +232,7 @@ std::string speed_plot(const PartResult& part, std::size_t seam) {
     for (const PlotPoint& p : speeds) {
         most = std::max(most, p.y);
     }
-    const PlotAxes axes{kNarrow,       kNarrowHeight, 0, part.models[seam].length_mm, 0, padded(most, 1e-3),
+    const PlotAxes axes{kNarrowPlot,   kNarrowHeight, 0, part.models[seam].length_mm, 0, padded(most, 1e-3),
                         "station, mm", "speed, mm/s"};
     return figure("", "<b>Torch speed</b> of the straight moves, " + decimal(wanted, 1) + " mm/s asked for",
                   svg_axes(axes, "Torch speed along the seam") + svg_level(axes, wanted, "", "quantile") +

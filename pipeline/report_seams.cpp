@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 #include "pipeline/groove_columns.hpp"
+#include "stages/angle.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/robust.hpp"
 
@@ -67,11 +67,11 @@ void add_estimate(ReportRows& rows, const std::string& name, const std::string& 
 ReportRows model_rows(const SeamModel& model) {
     ReportRows rows{fact("model", "Model", model.model), fact("model_reason", "Why that model", model.reason)};
     if (model.saddle) {
-        constexpr double kDegrees = 180 / std::numbers::pi;
         rows.push_back(fact("header", "Header of the saddle", name(model.saddle->header)));
         add_estimate(rows, "branch_radius", "Radius of the branch", "mm", model.saddle->branch_radius_mm);
         add_estimate(rows, "header_radius", "Radius of the header", "mm", model.saddle->header_radius_mm);
-        add_estimate(rows, "branch_angle", "Angle of branch and header", "deg", model.saddle->angle_rad, kDegrees);
+        add_estimate(rows, "branch_angle", "Angle of branch and header", "deg", model.saddle->angle_rad,
+                     kDegreesPerRadian);
         add_estimate(rows, "branch_offset", "Offset of the branch", "mm", model.saddle->offset_mm);
     }
     return rows;

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr float kSteps = 65535;
 
 /// The still picture: its size in CSS pixels, and how many points it shows of each cloud.
-constexpr double kWidth = 1200, kHeight = 640;
+constexpr double kViewWidth = 1200, kViewHeight = 640;
 constexpr std::size_t kStillPoints = 6000;
 
 /// Coordinates in the page: a tenth of a micrometre.
@@ -24,12 +24,12 @@ double trimmed(double mm) {
     return std::round(mm * 1e4) / 1e4;
 }
 
-Json vector_json(const Eigen::Vector3d& v) {
+Json trimmed_json(const Eigen::Vector3d& v) {
     return {trimmed(v.x()), trimmed(v.y()), trimmed(v.z())};
 }
 
 Json camera_json(const ViewCamera& camera) {
-    return {{"toward", vector_json(camera.toward)}, {"up", vector_json(camera.up)}};
+    return {{"toward", trimmed_json(camera.toward)}, {"up", trimmed_json(camera.up)}};
 }
 
 Json cloud_json(const ViewCloud& cloud) {
@@ -50,8 +50,8 @@ Json cloud_json(const ViewCloud& cloud) {
         }
     }
     return {{"count", cloud.points.size()},
-            {"low", vector_json(low.cast<double>())},
-            {"size", vector_json(size.cast<double>())},
+            {"low", trimmed_json(low.cast<double>())},
+            {"size", trimmed_json(size.cast<double>())},
             {"spacing", trimmed(static_cast<double>(cloud.spacing_mm))},
             {"positions", base64(positions)},
             {"normals", base64(normals)}};
@@ -64,7 +64,7 @@ Json seam_json(const ViewSeam& seam) {
                            s.covered ? Json(trimmed(s.distance_mm)) : Json(), trimmed(s.sigma_mm), s.modelled ? 1 : 0});
     }
     for (const Eigen::Vector3d& node : seam.nodes) {
-        nodes.push_back(vector_json(node));
+        nodes.push_back(trimmed_json(node));
     }
     return {{"tolerance", seam.tolerance_mm},
             {"camera", camera_json(seam.camera)},
@@ -81,10 +81,10 @@ struct Projection {
         : right(scene.camera.up.cross(scene.camera.toward)),
           up(scene.camera.up),
           toward(scene.camera.toward),
-          scale(0.5 * kHeight / scene.radius_mm) {}
+          scale(0.5 * kViewHeight / scene.radius_mm) {}
 
     Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
-        return {kWidth / 2 + scale * right.dot(p), kHeight / 2 - scale * up.dot(p), toward.dot(p)};
+        return {kViewWidth / 2 + scale * right.dot(p), kViewHeight / 2 - scale * up.dot(p), toward.dot(p)};
     }
 };
 
@@ -117,7 +117,7 @@ std::string still_cloud(const ViewCloud& cloud, const Projection& project) {
             continue;
         }
         const Eigen::Vector3d p = project(cloud.points[i].cast<double>());
-        if (p.x() > 0 && p.x() < kWidth && p.y() > 0 && p.y() < kHeight) {
+        if (p.x() > 0 && p.x() < kViewWidth && p.y() > 0 && p.y() < kViewHeight) {
             const double shade = std::abs(cloud.normals[i].cast<double>().dot(light));
             paths[std::min<std::size_t>(3, static_cast<std::size_t>(4 * shade))].append("M").append(place(p)).append(
                 "h0");
@@ -155,7 +155,7 @@ std::string view_json(const ViewScene& scene) {
         seams.push_back(seam_json(seam));
     }
     for (const ViewTorch& pose : scene.torch) {
-        torch.push_back({vector_json(pose.p), vector_json(pose.axis)});
+        torch.push_back({trimmed_json(pose.p), trimmed_json(pose.axis)});
     }
     for (const char* stop : kDeviationColours) {
         colours.push_back(stop);
@@ -174,8 +174,8 @@ std::string view_json(const ViewScene& scene) {
 
 std::string view_svg(const ViewScene& scene) {
     const Projection project(scene);
-    std::string svg = "<svg class=\"still\" role=\"img\" viewBox=\"0 0 " + decimal(kWidth, 0) + ' ' +
-                      decimal(kHeight, 0) + "\"><title>Scan and seams, seen from the air side</title>";
+    std::string svg = "<svg class=\"still\" role=\"img\" viewBox=\"0 0 " + decimal(kViewWidth, 0) + ' ' +
+                      decimal(kViewHeight, 0) + "\"><title>Scan and seams, seen from the air side</title>";
     svg += still_cloud(scene.clouds[1], project) + still_cloud(scene.clouds[0], project);
     for (const ViewSeam& seam : scene.seams) {
         svg += still_seam(scene, seam, project);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLeft = 58, kRight = 14, kTop = 10, kBottom = 40;
 
 // A line keeps at most two points (lowest and highest) for each of so many columns.
-constexpr std::size_t kColumns = 700;
+constexpr std::size_t kMostColumns = 700;
 
 double pixel_x(const PlotAxes& axes, double x) {
     return kLeft + (x - axes.x_low) / (axes.x_high - axes.x_low) * (axes.width - kLeft - kRight);
@@ -54,15 +54,15 @@ int tick_decimals(const std::vector<double>& ticks) {
     return std::clamp(static_cast<int>(std::ceil(-std::log10(ticks[1] - ticks[0]) - 1e-9)), 0, 9);
 }
 
-/// Lowest and highest point of each of kColumns equal runs, in their order; short lines stay as they are.
+/// Lowest and highest point of each of kMostColumns equal runs, in their order; short lines stay as they are.
 std::vector<PlotPoint> thinned(std::span<const PlotPoint> points) {
-    if (points.size() <= 2 * kColumns) {
+    if (points.size() <= 2 * kMostColumns) {
         return {points.begin(), points.end()};
     }
     std::vector<PlotPoint> kept;
-    for (std::size_t column = 0; column < kColumns; ++column) {
-        const auto first = points.begin() + static_cast<std::ptrdiff_t>(points.size() * column / kColumns);
-        const auto last = points.begin() + static_cast<std::ptrdiff_t>(points.size() * (column + 1) / kColumns);
+    for (std::size_t column = 0; column < kMostColumns; ++column) {
+        const auto first = points.begin() + static_cast<std::ptrdiff_t>(points.size() * column / kMostColumns);
+        const auto last = points.begin() + static_cast<std::ptrdiff_t>(points.size() * (column + 1) / kMostColumns);
         const auto gap = std::find_if(first, last, [](const PlotPoint& p) { return !std::isfinite(p.y); });
         if (gap != last) {
             kept.push_back(*gap);

@@ -10,6 +10,7 @@
 #include "pipeline/digest.hpp"
 #include "pipeline/groove_columns.hpp"
 #include "pipeline/report_text.hpp"
+#include "stages/angle.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -173,7 +174,6 @@ std::string passes_csv(const std::vector<PlannedPass>& passes) {
 }
 
 std::string joints_csv(const ArmTravel& arm) {
-    constexpr double kDegrees = 180 / std::numbers::pi;
     std::string text =
         "# arm: " + arm.arm +
         "\n# unit: mm, s, deg; roll: of the torch about its wire; waypoint: row of waypoints.csv, from 0\n"
@@ -185,9 +185,9 @@ std::string joints_csv(const ArmTravel& arm) {
                            (s.waypoint >= 0 ? std::to_string(s.waypoint) : "");
         append(line, {s.station_mm, s.time_s});
         for (const double q : s.q) {
-            append(line, {q * kDegrees});
+            append(line, {q * kDegreesPerRadian});
         }
-        append(line, {s.roll * kDegrees, s.manipulability});
+        append(line, {s.roll * kDegreesPerRadian, s.manipulability});
         text += line + "\n";
     }
     return text;

@@ -8,7 +8,7 @@
 namespace seampath {
 namespace {
 
-constexpr std::size_t kMaxArtefactBytes = std::size_t{1} << 31;
+constexpr std::size_t kMaxStageBytes = std::size_t{1} << 31;
 constexpr std::array<std::string_view, 6> kArtefactNames{"1-scan.json",   "2-seams.json",     "3-nodes.json",
                                                          "4-models.json", "5-deviation.json", "6-plan.json"};
 
@@ -60,7 +60,7 @@ std::string Walk::stored(std::string_view stage) const {
         return {};
     }
     const auto file = folder_->path() / kArtefactNames.at(index(stage));
-    return std::filesystem::exists(file) ? read_file(file, kMaxArtefactBytes, std::string(stage)) : std::string();
+    return std::filesystem::exists(file) ? read_file(file, kMaxStageBytes, std::string(stage)) : std::string();
 }
 
 }  // namespace seampath

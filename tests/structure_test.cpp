@@ -12,7 +12,7 @@
 /// never includes another stage, nobody outside a stage includes its private headers, and no header drags PCL, CGAL or
 /// OpenCV in.
 namespace seampath {
-namespace {
+namespace structure_test {
 
 namespace fs = std::filesystem;
 
@@ -147,5 +147,5 @@ TEST(Structure, RulesAllowAndForbid) {
     }
 }
 
-}  // namespace
+}  // namespace structure_test
 }  // namespace seampath

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "pipeline/files.hpp"
 #include "pipeline/mechanism_drawing.hpp"
 #include "pipeline/text.hpp"
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/mechanism/mechanism.hpp"
 #include "stages/text.hpp"
@@ -21,8 +21,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Eigen::Vector2d;
 using Rows = std::vector<std::vector<std::string>>;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Arguments {
     double radius_mm = 500;

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "pipeline/files.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/text.hpp"
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/nominal/nominal.hpp"
 #include "stages/text.hpp"
@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 constexpr const char* kPointsFile = "saddle_points.csv";
 constexpr const char* kFactsFile = "saddle.json";

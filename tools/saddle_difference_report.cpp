@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "pipeline/report_text.hpp"
 #include "pipeline/svg.hpp"
 #include "pipeline/text.hpp"
+#include "stages/angle.hpp"
 #include "stages/text.hpp"
 #include "tools/saddle_difference.hpp"
 
@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Rows of the printed table; the file has all places.
 constexpr int kPrinted = 12;

@@ -8,14 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/text.hpp"
+#include "stages/angle.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Places at which the range of opening and curvature is looked for: every 0.05 deg.
 constexpr int kLooks = 7200;

@@ -1,16 +1,14 @@
 #include "tools/saddle_points.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/text.hpp"
 #include "tools/choice.hpp"
 
 namespace seampath {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 constexpr double kMostSteps = 1e7;
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/export/parts.hpp"
 #include "stages/export/text.hpp"
@@ -22,7 +22,6 @@ constexpr std::size_t kMaxProgramName = 32;  // of 36: leaves room for "_123"
 constexpr std::size_t kMaxRemark = 32;
 constexpr double kRounding_mm = 0.0005;
 constexpr double kMaxCoordinate_mm = 8388.607;  // positions are 24-bit floats: up to 2^23 thousandths
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 constexpr double kMaxSpeedRounding = 0.0045;
 constexpr double kMaxSpeed_mm_s = 2000;
@@ -37,7 +36,7 @@ bool with_arc(const ExportOptions& options) {
 // W, P, R in thousandths of a degree. Near P = 90 deg, W and R turn about the same axis and their roundings add up:
 // of those around each number the ones that together are nearest.
 Eigen::Vector3d rounded_angles(const Eigen::Quaterniond& q) {
-    const Eigen::Vector3d zyx = kDegrees * euler_zyx(q);
+    const Eigen::Vector3d zyx = kDegreesPerRadian * euler_zyx(q);
     Eigen::Vector3d best = zyx;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 27; ++i) {
@@ -48,7 +47,7 @@ Eigen::Vector3d rounded_angles(const Eigen::Quaterniond& q) {
         if (tried.maxCoeff() > 180) {
             continue;
         }
-        const Eigen::Vector3d rad = tried / kDegrees;
+        const Eigen::Vector3d rad = tried / kDegreesPerRadian;
         const double off = rotation_angle(q, from_euler_zyx(rad[0], rad[1], rad[2]));
         if (off < least - 1e-12) {
             least = off;

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/export/text.hpp"
 #include "stages/geometry/pose.hpp"
@@ -18,7 +18,6 @@ constexpr std::size_t kMaxName = 64;
 constexpr double kRounding_mm = 0.00005;
 constexpr double kMaxCoordinate_mm = 99999;
 constexpr double kMinSpeed_mm_s = 0.01;  // F has 4 decimals of a mm/min
-constexpr double kDegree = std::numbers::pi / 180;
 
 // What the rotation of a move may differ from the even one.
 constexpr double kMaxUneven = 0.0075 * kDegree;
@@ -27,7 +26,6 @@ constexpr int kMaxHalvings = 9;
 // Angles z, y, x of the same rotation that are nearest to `before`: by whole turns, and by the other solution, which
 // has y beyond a quarter turn.
 Eigen::Vector3d nearest_angles(const Eigen::Quaterniond& q, const Eigen::Vector3d& before) {
-    constexpr double kTurn = 2 * std::numbers::pi;
     const Eigen::Vector3d one = euler_zyx(q, before[0]);
     const Eigen::Vector3d other(one[0] + kTurn / 2, kTurn / 2 - one[1], one[2] + kTurn / 2);
     const auto near = [&](const Eigen::Vector3d& zyx) {

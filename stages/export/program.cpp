@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/export/format.hpp"
 #include "stages/export/text.hpp"
@@ -10,8 +10,6 @@
 
 namespace seampath::exporting {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // What half a unit of the last place at the ends of an arc can move its middle by: the arc turns by 5 deg at least, so
 // that its sagitta is some 90 times smaller than its chord, and three points of it are rounded.

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <limits>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "stages/angle.hpp"
 #include "stages/export/format.hpp"
 #include "stages/geometry/pose.hpp"
 #include "stages/text.hpp"
@@ -107,7 +107,6 @@ inline void require(bool holds, const Scanner& place, const std::string& needed)
 
 /// Rz(z) Ry(y) Rx(x), deg.
 inline Eigen::Quaterniond turned(double z_deg, double y_deg, double x_deg) {
-    constexpr double kDegree = std::numbers::pi / 180;
     return from_euler_zyx(z_deg * kDegree, y_deg * kDegree, x_deg * kDegree);
 }
 

@@ -19,7 +19,7 @@ constexpr double kSlope = 0.02;      // by which a sheet may leave the surface f
 constexpr double kLeastFull = 0.7;   // share of the sheet's density beside a border
 constexpr double kMostEmpty = 0.25;  // of it beyond
 constexpr double kLeastChance = 16;  // -ln of the chance of so empty a strip: e^-16 times all strips that are tried
-constexpr Eigen::Index kLeastPoints = 150;
+constexpr Eigen::Index kLeastPatchPoints = 150;
 
 using Quadratic = Eigen::Vector<double, 6>;  // coefficients of 1, x, y, x^2, xy, y^2
 
@@ -112,10 +112,10 @@ Patch patch_at(const Around& around, const Surfel& surfel, double reach, double 
 }
 
 /// Cumulated numbers of points over their distance along one direction, of those within `half` to each side of it.
-class Profile {
+class EdgeProfile {
 public:
     /// u along the direction, v across it: of points within `reach` of the middle.
-    Profile(const Eigen::ArrayXf& u, const Eigen::ArrayXf& v, double half, double reach)
+    EdgeProfile(const Eigen::ArrayXf& u, const Eigen::ArrayXf& v, double half, double reach)
         : reach_(reach), step_(2 * reach / kSteps) {
         const auto h = static_cast<float>(half), r = static_cast<float>(reach), per_mm = static_cast<float>(1 / step_);
         // What lies beside is put far behind the last step, and counted in a step of its own there: without a branch.
@@ -140,8 +140,8 @@ public:
         sum_[kSteps + 1] = sum_[kSteps];
     }
     /// The same, looked at from the other side.
-    Profile reversed() const {
-        Profile other = *this;
+    EdgeProfile reversed() const {
+        EdgeProfile other = *this;
         for (std::size_t i = 0; i <= kSteps; ++i) {
             other.sum_[i] = sum_[kSteps] - sum_[kSteps - i];
         }
@@ -166,7 +166,7 @@ struct Found {
 };
 
 // The emptiest strip beside a full one in one direction, when emptier than `best`.
-void look_along(const Profile& profile, double angle, double spacing, double reach, Found& best) {
+void look_along(const EdgeProfile& profile, double angle, double spacing, double reach, Found& best) {
     const double strip = spacing, inner = 5 * spacing, length = 1.2 * reach;
     const double density = profile.between(-0.6 * reach, -0.6 * reach + 2 * inner) / (2 * inner * length);
     const double expected = density * strip * length;
@@ -189,7 +189,7 @@ void look_around(const Patch& patch, double angle, double spacing, double reach,
     const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
     const Eigen::ArrayXf u = patch.x * c + patch.y * s, v = patch.y * c - patch.x * s;
     for (const bool across : {false, true}) {
-        const Profile profile = across ? Profile(v, u, half, reach) : Profile(u, v, half, reach);
+        const EdgeProfile profile = across ? EdgeProfile(v, u, half, reach) : EdgeProfile(u, v, half, reach);
         const double there = angle + (across ? std::numbers::pi / 2 : 0);
         look_along(profile, there, spacing, reach, best);
         look_along(profile.reversed(), there + std::numbers::pi, spacing, reach, best);
@@ -253,7 +253,7 @@ std::vector<Border> find_borders(const Around& around) {
         const Surfel& surfel = around.surfels.at[chosen[k]];
         const ScanScale scale = around.field.at(surfel.p);
         const Patch patch = patch_at(around, surfel, reach, std::max(scale.noise, 0.05 * scale.spacing));
-        if (patch.x.size() < kLeastPoints) {
+        if (patch.x.size() < kLeastPatchPoints) {
             return;
         }
         const Found best = best_border(patch, scale.spacing, reach);

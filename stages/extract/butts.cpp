@@ -17,7 +17,7 @@ namespace seampath::detail {
 namespace {
 
 constexpr double kRound = 40 * std::numbers::pi / 180;  // between the tops of two gaps that meet round a corner
-constexpr double kLeastLength = 40;                     // of a seam, in point distances
+constexpr double kLeastButt = 40;                       // of a seam, in point distances
 constexpr double kUnseen = 0.2;  // noises by which an edge's place is doubtful beyond what its witnesses scatter
 
 std::vector<GapStation> at_equal_steps(const GapWay& way, double step) {
@@ -268,7 +268,7 @@ Butts find_butts(const Around& around, const std::vector<Border>& borders, doubl
             place_end(around, way, step, -1);
             std::reverse(way.begin(), way.end());
         }
-        const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * around.field.overall.spacing;
+        const double least = min_length_mm > 0 ? min_length_mm : kLeastButt * around.field.overall.spacing;
         const double length = length_of(way);
         const auto bridged = static_cast<std::size_t>(
             std::count_if(way.begin(), way.end(), [](const GapStation& station) { return station.modelled; }));

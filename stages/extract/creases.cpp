@@ -14,12 +14,12 @@ namespace {
 
 constexpr int kTrials = 48;  // a half of the surfels on one plane: failure chance (1 - 1/8)^48 = 0.2 %
 constexpr double kFailure = 0.002;
-constexpr double kLeastBend = 20 * std::numbers::pi / 180;
-constexpr double kLeastShare = 0.15;  // of the neighbours, on each plane
+constexpr double kLeastCrease = 20 * std::numbers::pi / 180;
+constexpr double kLeastPlaneShare = 0.15;  // of the neighbours, on each plane
 constexpr double kMostUnexplained = 0.25;
 constexpr double kFoldShare = 0.85;  // of a plane's surfels, on its own side of the crease
 
-struct Plane {
+struct CreasePlane {
     Eigen::Vector3d n{0, 0, 0};
     double d = 0;  // n.x = d
     double distance(const Eigen::Vector3d& x) const { return std::abs(n.dot(x) - d); }
@@ -34,14 +34,14 @@ std::uint32_t mix(std::uint64_t x) {
     return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 16);
 }
 
-std::optional<Plane> through(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                             double least_area) {
+std::optional<CreasePlane> through(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                                   double least_area) {
     const Eigen::Vector3d n = (b - a).cross(c - a);
     const double area = n.norm();
     if (area < least_area) {
         return std::nullopt;
     }
-    return Plane{n / area, n.dot(a) / area};
+    return CreasePlane{n / area, n.dot(a) / area};
 }
 
 // Trials after which a plane that holds `count` of `all` points has been missed with a chance of kFailure (Fischler &
@@ -52,8 +52,8 @@ int trials_enough(std::size_t count, std::size_t all) {
 }
 
 // The plane with most points within `tolerance`.
-std::optional<Plane> consensus_plane(const Points& x, double tolerance, double least_area, std::uint64_t stream) {
-    std::optional<Plane> best;
+std::optional<CreasePlane> consensus_plane(const Points& x, double tolerance, double least_area, std::uint64_t stream) {
+    std::optional<CreasePlane> best;
     std::size_t most = 3;
     int enough = kTrials;
     for (int trial = 0; trial < enough && x.size() > 3; ++trial) {
@@ -79,7 +79,7 @@ std::optional<Plane> consensus_plane(const Points& x, double tolerance, double l
     return best;
 }
 
-std::optional<Plane> fitted(const Points& x) {
+std::optional<CreasePlane> fitted(const Points& x) {
     if (x.size() < 4) {
         return std::nullopt;
     }
@@ -95,11 +95,11 @@ std::optional<Plane> fitted(const Points& x) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
     solver.computeDirect(scatter);
     const Eigen::Vector3d n = solver.eigenvectors().col(0);
-    return Plane{n, n.dot(mean)};
+    return CreasePlane{n, n.dot(mean)};
 }
 
 struct Split {
-    Plane plane[2];
+    CreasePlane plane[2];
     std::vector<std::size_t> member[2];  // indices into the points
     std::size_t unexplained = 0;
 };
@@ -162,7 +162,7 @@ std::optional<Crease> as_crease(const Surfels& surfels, std::span<const std::uin
     const auto n = static_cast<double>(x.size());
     if (static_cast<double>(split.unexplained) > kMostUnexplained * n ||
         static_cast<double>(std::min(split.member[0].size(), split.member[1].size())) <
-            std::max(6.0, kLeastShare * n)) {
+            std::max(6.0, kLeastPlaneShare * n)) {
         return std::nullopt;
     }
     Crease crease;
@@ -175,7 +175,7 @@ std::optional<Crease> as_crease(const Surfels& surfels, std::span<const std::uin
         normal[k] = sign < 0 ? -split.plane[k].n : split.plane[k].n;
     }
     const Eigen::Vector3d axis = normal[0].cross(normal[1]);
-    if (axis.norm() < std::sin(kLeastBend)) {
+    if (axis.norm() < std::sin(kLeastCrease)) {
         return std::nullopt;
     }
     const Eigen::Vector3d t = axis.normalized();

@@ -24,7 +24,7 @@ namespace {
 
 using namespace detail;
 
-constexpr std::size_t kLeastPoints = 200;
+constexpr std::size_t kLeastScanPoints = 200;
 
 // Distance of the points of a seam: as fine as the scan's points allow.
 double station_distance(const ScanScale& scale, std::size_t points) {
@@ -169,9 +169,9 @@ Fields describe(ExtractOptions& o) {
 }
 
 Extraction extract(const Scan& scan, const ExtractOptions& options) {
-    if (scan.points.size() < kLeastPoints) {
+    if (scan.points.size() < kLeastScanPoints) {
         throw InputError("extract: the scan has " + std::to_string(scan.points.size()) + " points; at least " +
-                         std::to_string(kLeastPoints) +
+                         std::to_string(kLeastScanPoints) +
                          " are needed to fit two surfaces; scan the part with a finer pitch");
     }
     Extraction result;

@@ -15,7 +15,7 @@
 namespace seampath::detail {
 namespace {
 
-constexpr double kLeastLength = 10;  // of a seam, in point distances
+constexpr double kLeastFold = 10;  // of a seam, in point distances
 
 // The creases that may be joints, heaviest first. A convex one is turned inside out: seen from within the material it
 // is concave, and all that follows holds for it.
@@ -111,7 +111,7 @@ std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& 
     std::vector<Fold> joints;
     for (const Track& track : tracks) {
         const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
-        const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * spacing;
+        const double least = min_length_mm > 0 ? min_length_mm : kLeastFold * spacing;
         double found = length_of(track.points);
         if (found >= least) {
             auto way = measure_track(tracker, track);

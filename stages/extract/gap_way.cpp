@@ -9,9 +9,9 @@ namespace seampath::detail {
 namespace {
 
 constexpr double kLeastGap = 1.1;  // point distances; what is narrower is not seen, and may be a step's wall
-constexpr double kMostTurn = 20 * std::numbers::pi / 180;  // of the direction, per step of following
-constexpr double kMostJump = 25;                           // mm without a gap to be seen, which tacks bridge
-constexpr std::size_t kMostSteps = 20000;
+constexpr double kMostGapTurn = 20 * std::numbers::pi / 180;  // of the direction, per step of following
+constexpr double kMostBridge = 25;                            // mm without a gap to be seen, which tacks bridge
+constexpr std::size_t kMostGapSteps = 20000;
 constexpr std::size_t kFewest = 3;  // places; what is seen at fewer is no gap
 
 class Follower {
@@ -40,7 +40,7 @@ public:
 private:
     // Extends the way at its back; true when it has come back to its front.
     bool advance(std::vector<GapStation>& way, double direction) const {
-        while (way.size() < kMostSteps) {
+        while (way.size() < kMostGapSteps) {
             const auto next = beyond(way, direction);
             if (!next) {
                 return false;
@@ -84,13 +84,13 @@ private:
             const GapPlace& before = way[way.size() - 8].fit.place;
             turn = (last.t - before.t) / std::max(step_, (last.p - before.p).norm());
         }
-        for (double ahead = step_; ahead <= kMostJump; ahead += step_) {
+        for (double ahead = step_; ahead <= kMostBridge; ahead += step_) {
             GapPlace guess = last;
             guess.p += ahead * direction * last.t + 0.5 * ahead * ahead * turn;
             const auto fit = measure(guess, 2);
             const double off = fit ? (fit->place.p - guess.p).norm() : 0;
             if (fit && off < 0.25 * last.gap + 0.3 * step_ + 0.02 * ahead &&
-                fit->place.t.dot(last.t) > std::cos(kMostTurn) && fit->place.gap > 0.4 * last.gap &&
+                fit->place.t.dot(last.t) > std::cos(kMostGapTurn) && fit->place.gap > 0.4 * last.gap &&
                 fit->place.gap < 2.5 * last.gap) {
                 return fit;
             }
@@ -139,7 +139,7 @@ ViewedPoints viewed_points(const Around& around) {
 bool is_gap(const GapFit& fit, const ScanScale& scale) {
     const auto& [place, n1, n2, gap, mismatch, sigma, shift, views, support, walled] = fit;
     return place.gap > kLeastGap * scale.spacing && place.gap < kMostGap && std::abs(place.mismatch) < kMostMismatch &&
-           n1.dot(n2) > std::cos(kMostTurn) && std::min(support[0], support[1]) > 0;
+           n1.dot(n2) > std::cos(kMostGapTurn) && std::min(support[0], support[1]) > 0;
 }
 
 // Between two places, x of the way from a to b.

@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLeastDensity = 0.1;  // of the bevel's usual density
-constexpr std::size_t kMostSteps = 100000;
+constexpr double kLeastBevelDensity = 0.1;  // of the bevel's usual density
+constexpr std::size_t kMostGrooveSteps = 100000;
 
 GrooveWindow following_window_of(const ScanScale& scale) {
     const SectionWindow w = following_window(scale);
@@ -97,7 +97,7 @@ bool believable(const GroovePlace& place, const std::vector<GroovePlace>& way, d
         return false;
     }
     for (std::size_t k = 0; k < 2; ++k) {
-        if (place.fit.density[k] < kLeastDensity * quantile(density[k], 0.5)) {
+        if (place.fit.density[k] < kLeastBevelDensity * quantile(density[k], 0.5)) {
             return false;
         }
     }
@@ -107,7 +107,7 @@ bool believable(const GroovePlace& place, const std::vector<GroovePlace>& way, d
 // Extends the way in one direction; true when it comes back to its beginning.
 bool advance(const Tracker& tracker, std::vector<GroovePlace>& way, double direction) {
     constexpr std::size_t kBehind = 10, kOver = 8;
-    while (way.size() < kMostSteps) {
+    while (way.size() < kMostGrooveSteps) {
         Station next = settled(way.back());
         Vector3d t = next.frame.t;
         if (way.size() > kOver) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <optional>
 
+#include "stages/angle.hpp"
 #include "stages/extract/groove_way.hpp"
 #include "stages/extract/registration.hpp"
 #include "stages/text.hpp"
@@ -16,8 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kLeastLength = 20;               // of a groove, in point distances
+constexpr double kLeastGroove = 20;               // of a groove, in point distances
 const double kLevel = std::cos(15 * kDegree);     // of the two tops against each other
 const double kParallel = std::cos(15 * kDegree);  // of the two top edges
 const double kSquare = std::sin(8 * kDegree);
@@ -25,13 +24,13 @@ constexpr double kWidest = 60;     // mm, between the top edges
 constexpr double kMostStep = 0.5;  // of the tops, in widths
 
 /// A convex crease read as the top edge of a bevel.
-struct Edge {
+struct GrooveEdge {
     std::size_t crease;
     Vector3d p, t, top, bevel;
 };
 
-std::vector<Edge> edges_of(const std::vector<Crease>& creases) {
-    std::vector<Edge> edges;
+std::vector<GrooveEdge> edges_of(const std::vector<Crease>& creases) {
+    std::vector<GrooveEdge> edges;
     for (std::size_t i = 0; i < creases.size(); ++i) {
         const Crease& c = creases[i];
         if (!c.concave) {
@@ -43,7 +42,7 @@ std::vector<Edge> edges_of(const std::vector<Crease>& creases) {
 }
 
 // Whether b is the other side of a groove of which a is one; its width.
-std::optional<double> faces(const Edge& a, const Edge& b, double reach) {
+std::optional<double> faces(const GrooveEdge& a, const GrooveEdge& b, double reach) {
     if (a.crease == b.crease || a.top.dot(b.top) < kLevel || std::abs(a.t.dot(b.t)) < kParallel) {
         return std::nullopt;
     }
@@ -62,7 +61,7 @@ std::optional<double> faces(const Edge& a, const Edge& b, double reach) {
 }
 
 // a on the right of travel.
-GrooveSeed seed_of(const Edge& a, const Edge& b, double down) {
+GrooveSeed seed_of(const GrooveEdge& a, const GrooveEdge& b, double down) {
     GrooveSeed seed;
     const Vector3d up = (a.top + b.top).normalized();
     Vector3d left = b.p - a.p;
@@ -73,7 +72,7 @@ GrooveSeed seed_of(const Edge& a, const Edge& b, double down) {
     seed.frame.p = 0.5 * (a.p + b.p);
     const auto in_section = [&](const Vector3d& v) { return Vector2d(v.dot(seed.frame.left()), v.dot(seed.frame.up)); };
     int k = 0;
-    for (const Edge* e : {&a, &b}) {
+    for (const GrooveEdge* e : {&a, &b}) {
         const auto side = static_cast<std::size_t>(k);
         const Vector2d n = in_section(e->bevel).normalized(), top = in_section(e->top).normalized();
         const Vector2d downwards = k == 0 ? Vector2d(n[1], -n[0]) : Vector2d(-n[1], n[0]);
@@ -206,20 +205,20 @@ Grooves find_grooves(const Around& around, double min_length_mm) {
     const Tracker& following = around.following;
     Grooves result;
     result.claimed.assign(around.creases.size(), 0);
-    std::vector<Edge> edges = edges_of(around.creases);
-    std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
+    std::vector<GrooveEdge> edges = edges_of(around.creases);
+    std::stable_sort(edges.begin(), edges.end(), [&](const GrooveEdge& a, const GrooveEdge& b) {
         return around.creases[a.crease].weight > around.creases[b.crease].weight;
     });
     std::vector<char> tried(around.creases.size(), 0);
     std::vector<GrooveWay> ways;
     const double reach = around.surfels.radius;
-    for (const Edge& a : edges) {
+    for (const GrooveEdge& a : edges) {
         if (tried[a.crease]) {
             continue;
         }
         std::optional<double> nearest;
-        const Edge* partner = nullptr;
-        for (const Edge& b : edges) {
+        const GrooveEdge* partner = nullptr;
+        for (const GrooveEdge& b : edges) {
             const auto width = tried[b.crease] ? std::nullopt : faces(a, b, 0.5 * reach);
             if (width && (!nearest || *width < *nearest)) {
                 nearest = width;
@@ -242,7 +241,7 @@ Grooves find_grooves(const Around& around, double min_length_mm) {
         }
         tried[a.crease] = 1;
         const double length = length_of(*way);
-        const double least = min_length_mm > 0 ? min_length_mm : kLeastLength * around.field.overall.spacing;
+        const double least = min_length_mm > 0 ? min_length_mm : kLeastGroove * around.field.overall.spacing;
         if (length < least) {
             result.remarks.push_back("a groove of " + fixed(length, 1) + " mm was left out: shorter than " +
                                      fixed(least, 1) + " mm");

@@ -12,7 +12,7 @@ constexpr double kMostWindows = 6;                              // longest gap, 
 constexpr double kMostShare = 0.35;                             // of the length of what is joined
 constexpr double kMostAngle = 50 * std::numbers::pi / 180;      // between the ends' directions and the chord
 constexpr double kMostAsymmetry = 12 * std::numbers::pi / 180;  // between the two: an arc leaves as it arrives
-constexpr double kMostTwist = 60 * std::numbers::pi / 180;      // of a flank normal across the gap
+constexpr double kMostGapTwist = 60 * std::numbers::pi / 180;   // of a flank normal across the gap
 
 double length_of(const Track& track) {
     double length = 0;
@@ -104,7 +104,7 @@ std::optional<Bridge> bridge(const Tracker& tracker, const Track& from, const Tr
     if (gap > kMostWindows * tracker.window_at(a.section).away || gap > kMostShare * supported ||
         std::max(leave, arrive) > kMostAngle ||
         std::abs(leave - arrive) > kMostAsymmetry + 4 * tracker.step / (gap + tracker.step) * 0.1 ||
-        angle(a.section.n1, b.section.n1) > kMostTwist || angle(a.section.n2, b.section.n2) > kMostTwist) {
+        angle(a.section.n1, b.section.n1) > kMostGapTwist || angle(a.section.n2, b.section.n2) > kMostGapTwist) {
         return std::nullopt;
     }
     Bridge result;

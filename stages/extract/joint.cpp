@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 using Shifts = std::map<std::uint32_t, Vector3d>;  ///< of the views, mm
 
 /// A flank whose points have been moved back by their views' shifts, as far as these are known.
-struct Flank {
+struct JointFlank {
     std::vector<Vector3d> points;
     std::optional<SurfaceFit> surface;
     double variance = 0;  ///< of a point, for the purpose of a fit over all of them, mm^2
@@ -39,7 +39,7 @@ struct Sums {
     std::map<std::uint32_t, View> view;
 };
 
-int parameters(const Flank& flank) {
+int parameters(const JointFlank& flank) {
     return flank.surface ? flank.surface->parameters() : 0;
 }
 
@@ -53,7 +53,7 @@ double variance_of(const SurfaceFit& surface, const std::vector<Vector3d>& point
     return (normal * surface.covariance()).trace() / surface.parameters();
 }
 
-Sums sums_of(const std::array<Flank, 2>& flanks, const std::array<PooledFlank, 2>& pooled) {
+Sums sums_of(const std::array<JointFlank, 2>& flanks, const std::array<PooledFlank, 2>& pooled) {
     const int all = parameters(flanks[0]) + parameters(flanks[1]);
     Sums sums{MatrixXd::Zero(all, all), VectorXd::Zero(all), {}};
     int first = 0;
@@ -121,8 +121,9 @@ std::optional<SurfaceFit> refitted(const SurfaceFit& surface, const std::vector<
 }
 
 // The flanks with their views moved back: their noise is then noise alone.
-std::array<Flank, 2> moved_back(const std::array<PooledFlank, 2>& pooled, const Shifts& shifts, double least_scale) {
-    std::array<Flank, 2> flanks;
+std::array<JointFlank, 2> moved_back(const std::array<PooledFlank, 2>& pooled, const Shifts& shifts,
+                                     double least_scale) {
+    std::array<JointFlank, 2> flanks;
     for (const std::size_t k : {0u, 1u}) {
         if (pooled[k].surface == nullptr) {
             continue;
@@ -147,7 +148,7 @@ std::array<Flank, 2> moved_back(const std::array<PooledFlank, 2>& pooled, const 
 }  // namespace
 
 SeamSurfaces joint_surfaces(const std::array<PooledFlank, 2>& pooled, double registration, double least_scale) {
-    std::array<Flank, 2> flanks = moved_back(pooled, {}, least_scale);
+    std::array<JointFlank, 2> flanks = moved_back(pooled, {}, least_scale);
     const int n[2] = {parameters(flanks[0]), parameters(flanks[1])}, all = n[0] + n[1];
     VectorXd step = VectorXd::Zero(all);
     MatrixXd covariance = MatrixXd::Zero(all, all);

@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::ptrdiff_t kReach = 3;   // places to each side of one that tell its line
-constexpr std::ptrdiff_t kBeyond = 8;  // places before an end that tell how it goes on
-constexpr double kOff = 3;             // times as far off as the middle one of its neighbours is
-constexpr double kLeast = 1.5;         // sigmas; nearer to the line nothing is off it
-constexpr double kBreaks = 3;          // sigmas between an end and what leads there, and times what ends do elsewhere
+constexpr std::ptrdiff_t kPlacesAside = 3;  // places to each side of one that tell its line
+constexpr std::ptrdiff_t kBeyond = 8;       // places before an end that tell how it goes on
+constexpr double kOff = 3;                  // times as far off as the middle one of its neighbours is
+constexpr double kLeastJump = 1.5;          // sigmas; nearer to the line nothing is off it
+constexpr double kBreaks = 3;  // sigmas between an end and what leads there, and times what ends do elsewhere
 
 // Of what is not along travel.
 double across(const Vector3d& d, const TrackPoint& at) {
@@ -51,7 +51,7 @@ public:
     // How far place i is off the line of those around it, of which place `without` is none.
     double off(std::ptrdiff_t i, std::ptrdiff_t without) const {
         std::vector<const TrackPoint*> others;
-        for (std::ptrdiff_t k = i - kReach; k <= i + kReach; ++k) {
+        for (std::ptrdiff_t k = i - kPlacesAside; k <= i + kPlacesAside; ++k) {
             if (k != i && k != without && has(k)) {
                 others.push_back(&at(k));
             }
@@ -60,16 +60,16 @@ public:
     }
 
     bool is_off(std::ptrdiff_t i) const {
-        if (at(i).modelled || !has(i - kReach) || !has(i + kReach)) {
+        if (at(i).modelled || !has(i - kPlacesAside) || !has(i + kPlacesAside)) {
             return false;
         }
         std::vector<double> about;
         for (const std::ptrdiff_t k : {i - 2, i - 1, i + 1, i + 2}) {
-            if (has(k - kReach) && has(k + kReach)) {
+            if (has(k - kPlacesAside) && has(k + kPlacesAside)) {
                 about.push_back(off(k, i));
             }
         }
-        return off(i, i) > std::max(kLeast * at(i).sigma, kOff * quantile(about, 0.5));
+        return off(i, i) > std::max(kLeastJump * at(i).sigma, kOff * quantile(about, 0.5));
     }
 
 private:

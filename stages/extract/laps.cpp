@@ -19,8 +19,8 @@ namespace seampath::detail {
 namespace {
 
 constexpr double kMostThickness = 30;  // mm; what is thicker is no plate that anyone laps
-constexpr double kReach = 3;           // mm from the upper plate's edge to where the lower plate is seen at the latest
-constexpr double kLeastWidth = 3;      // of the upper plate, in its thicknesses
+constexpr double kEdgeReach = 3;       // mm from the upper plate's edge to where the lower plate is seen at the latest
+constexpr double kLeastLapWidth = 3;   // of the upper plate, in its thicknesses
 constexpr double kSameThickness = 0.15;
 
 // Tracks of one upper plate: its thickness is that of the first.
@@ -89,8 +89,8 @@ struct Seed {
 
 std::optional<Seed> seed_of(const Around& around, const Border& border, const LapsAsked& asked) {
     const double least = asked.by_any_step ? 3 * around.field.at(border.p).noise : asked.max_step_mm;
-    const auto below = sheet_beyond(around, border, kReach, -kMostThickness, -least);
-    if (!below || (!asked.by_any_step && !is_wide(around, border, kLeastWidth * -below->height))) {
+    const auto below = sheet_beyond(around, border, kEdgeReach, -kMostThickness, -least);
+    if (!below || (!asked.by_any_step && !is_wide(around, border, kLeastLapWidth * -below->height))) {
         return std::nullopt;
     }
     Seed seed;

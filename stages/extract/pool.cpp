@@ -8,7 +8,7 @@
 namespace seampath::detail {
 namespace {
 
-constexpr std::size_t kMostPoints = 60000;
+constexpr std::size_t kMostPooled = 60000;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ Pool pool_of(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) 
     for (const TrackPoint& place : way) {
         count += place.slab[k].size();
     }
-    const std::size_t stride = 1 + count / kMostPoints;
+    const std::size_t stride = 1 + count / kMostPooled;
     const ScanScale scale = tracker.scale_at(way[way.size() / 2].section);
     pool.correlation = 1 + (scale.correlation - 1) / static_cast<double>(stride);
     const double along = tracker.window_of(scale).along;

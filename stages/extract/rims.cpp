@@ -10,8 +10,8 @@
 namespace seampath::detail {
 namespace {
 
-constexpr double kLeastWidth = 1.0 / 3;  // of the wider face
-constexpr double kLeastLength = 0.5;     // of the narrower face's width
+constexpr double kLeastFaceWidth = 1.0 / 3;  // of the wider face
+constexpr double kLeastRim = 0.5;            // of the narrower face's width
 
 // A place in the middle of a face, between its edges.
 struct Middle {
@@ -72,14 +72,14 @@ void leave_out_rims(const Around& around, double max_thickness, std::vector<Fold
         const Sides& s = sides.back();
         const int k = s.narrow();
         const double length = length_of(edges[i].way);
-        if (s.width[k] < (max_thickness > 0 ? max_thickness : kLeastWidth * s.width[1 - k])) {
+        if (s.width[k] < (max_thickness > 0 ? max_thickness : kLeastFaceWidth * s.width[1 - k])) {
             why[i] = "a face of " + fixed(s.width[k], 1) + " mm beside one of " + fixed(s.width[1 - k], 1) +
                      " mm is taken for a plate's rim; extract.max_thickness_mm sets how wide a rim may be";
             // The edge that is shorter than a rim is wide runs across it.
             if (length > s.width[k]) {
                 rims.insert(rims.end(), s.middle[k].begin(), s.middle[k].end());
             }
-        } else if (length < kLeastLength * s.width[k]) {
+        } else if (length < kLeastRim * s.width[k]) {
             why[i] = "shorter than half of its narrower face, " + fixed(s.width[k], 1) + " mm";
         }
     }

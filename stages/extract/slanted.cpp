@@ -20,16 +20,16 @@ using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
 constexpr double kSparse = 2, kTooSparse = 5;   // point distance, in those of the scan
-constexpr std::size_t kLeastPoints = 30;        // of a face
+constexpr std::size_t kLeastFacePoints = 30;    // of a face
 constexpr std::size_t kEnoughForWindows = 500;  // a face of more is found as others are, or is none
-constexpr std::size_t kMostPoints = 6000;       // of a face or beside it: more only take time
-constexpr int kTrials = 400;             // a quarter of the points on the face: failure chance (1 - 1/64)^400 = 0.2 %
+constexpr std::size_t kMostFacePoints = 6000;   // of a face or beside it: more only take time
+constexpr int kFaceTrials = 400;         // a quarter of the points on the face: failure chance (1 - 1/64)^400 = 0.2 %
 constexpr std::size_t kMostGrowth = 20;  // of a face's points, by those near well-seen surfaces
 constexpr double kOnePlane = 0.8;        // of the points of a sparse surface, on the face's plane
 constexpr double kLeastHeight = 10;      // of a face over the seam, in its point distances
 constexpr double kBeside = 4;            // point distances within which a face must reach the seam
 constexpr double kOneSide = 0.9;         // of a face's points, on the air side of the other
-constexpr double kLeastLength = 10;      // of a seam, in point distances of the scan
+constexpr double kLeastSlanted = 10;     // of a seam, in point distances of the scan
 
 struct Face {
     SurfaceFit plane;
@@ -70,7 +70,7 @@ std::vector<std::vector<std::uint32_t>> sparse_groups(const Around& around) {
                 }
             }
         }
-        if (group.size() >= kLeastPoints / 2) {
+        if (group.size() >= kLeastFacePoints / 2) {
             groups.push_back(std::move(group));
         }
     }
@@ -81,14 +81,14 @@ bool before(const Vector3d& a, const Vector3d& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-// At most kMostPoints of them, by lot.
+// At most kMostFacePoints of them, by lot.
 Points points_of(const PointGrid& grid, const std::vector<std::uint32_t>& cells) {
     Points points;
     std::size_t all = 0;
     for (const std::uint32_t cell : cells) {
         all += grid.points(cell).size();
     }
-    const double share = std::min(1.0, static_cast<double>(kMostPoints) / static_cast<double>(all));
+    const double share = std::min(1.0, static_cast<double>(kMostFacePoints) / static_cast<double>(all));
     for (const std::uint32_t cell : cells) {
         for (const Eigen::Vector3f& p : grid.points(cell)) {
             if (lot_of(p) <= share * 4294967295.0) {
@@ -106,7 +106,7 @@ Points take_plane(Points& points, double tolerance) {
     Vector3d best_n = Vector3d::Zero();
     double best_d = 0;
     std::size_t most = 0;
-    for (int trial = 0; trial < kTrials && points.size() >= kLeastPoints; ++trial) {
+    for (int trial = 0; trial < kFaceTrials && points.size() >= kLeastFacePoints; ++trial) {
         const auto pick = [&](int k) { return points[lot_of(Vector3d(trial, k, 1).cast<float>()) % points.size()]; };
         const Vector3d a = pick(0), n = (pick(1) - a).cross(pick(2) - a);
         if (n.norm() == 0) {
@@ -135,7 +135,7 @@ std::optional<Face> face_of(Points points, const Vector3d& outward, double least
     for (std::size_t i = 0; i < block.size(); ++i) {
         block[i] = static_cast<std::uint32_t>(i);
     }
-    if (points.size() < kLeastPoints) {
+    if (points.size() < kLeastFacePoints) {
         return std::nullopt;
     }
     auto plane = fit_plane(points, block, outward, least_scale);
@@ -162,7 +162,7 @@ std::optional<Face> grown(const PointGrid& grid, const Face& face, double least_
     const Vector3d half = Vector3d::Constant(reach);
     std::set<std::size_t> taken;
     Points points = face.points;
-    const std::size_t most = std::min(kMostPoints, kMostGrowth * points.size());
+    const std::size_t most = std::min(kMostFacePoints, kMostGrowth * points.size());
     for (std::size_t k = 0; k < points.size() && points.size() < most; ++k) {
         const Vector3d from = points[k];
         grid.for_cells_in_box(from - half, from + half, [&](std::size_t cell) {
@@ -296,7 +296,7 @@ std::optional<Seam> fillet_of(const Around& around, const Face& sparse, const Fa
         return std::nullopt;
     }
     const double from = std::max(a1, a2), to = std::min(b1, b2), length = to - from;
-    if (length < (min_length > 0 ? min_length : kLeastLength * around.field.overall.spacing)) {
+    if (length < (min_length > 0 ? min_length : kLeastSlanted * around.field.overall.spacing)) {
         return std::nullopt;
     }
     Seam seam;

@@ -15,7 +15,7 @@ constexpr std::size_t kLeastNeighbours = 6;
 constexpr double kClear = 0.15;  // share of deciding rays that leaves no doubt; strays over a table decide fewer
 constexpr double kTouch = 1.8;   // cells; means of cells that share a corner are mostly nearer
 
-void fit_plane(Surfel& surfel, std::span<const std::uint32_t> neighbours, const std::vector<Surfel>& all) {
+void fit_surfel(Surfel& surfel, std::span<const std::uint32_t> neighbours, const std::vector<Surfel>& all) {
     if (neighbours.size() < kLeastNeighbours) {
         return;
     }
@@ -68,10 +68,10 @@ void collect_neighbours(const Surfels& surfels, std::uint32_t i, std::vector<std
     }
 }
 
-struct Edge {
+struct Link {
     float cost;
     std::uint32_t a, b;
-    bool operator<(const Edge& o) const { return std::tie(cost, a, b) < std::tie(o.cost, o.a, o.b); }
+    bool operator<(const Link& o) const { return std::tie(cost, a, b) < std::tie(o.cost, o.a, o.b); }
 };
 
 // Disjoint sets in which each element knows whether its normal is turned against that of its set's root.
@@ -137,7 +137,7 @@ void orient_to_file_normals(Surfels& surfels, const PointGrid& grid, const Scan&
 // of.
 void make_consistent(Surfels& surfels) {
     std::vector<Surfel>& at = surfels.at;
-    std::vector<Edge> edges;
+    std::vector<Link> edges;
     for (std::uint32_t a = 0; a < at.size(); ++a) {
         for (const std::uint32_t b : surfels.next[a]) {
             if (b > a && at[a].n.squaredNorm() > 0 && at[b].n.squaredNorm() > 0) {
@@ -150,7 +150,7 @@ void make_consistent(Surfels& surfels) {
     }
     std::sort(edges.begin(), edges.end());
     TurnedSets sets(at.size());
-    for (const Edge& e : edges) {
+    for (const Link& e : edges) {
         sets.join(e.a, e.b, at[e.a].n.dot(at[e.b].n) < 0);
     }
     for (std::uint32_t i = 0; i < at.size(); ++i) {
@@ -219,7 +219,7 @@ Surfels make_surfels(const PointGrid& grid, double radius) {
                               collect_neighbours(surfels, i, neighbours);
                           }};
     parallel_for(grid.cells(), 256,
-                 [&](std::size_t i) { fit_plane(surfels.at[i], surfels.neighbours[i], surfels.at); });
+                 [&](std::size_t i) { fit_surfel(surfels.at[i], surfels.neighbours[i], surfels.at); });
     return surfels;
 }
 

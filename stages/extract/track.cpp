@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/robust.hpp"
 
 namespace seampath::detail {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLeastBend = 5 * kDegree;  // flatter than this two flanks are one surface to a welder
 constexpr double kMostTurn = 35 * kDegree;  // of a flank normal against its prediction, per step
 constexpr double kLeastSupport = 0.1;       // of the density that the flank had so far: four views may become one

@@ -24,7 +24,7 @@ constexpr double kStandsOut = 16;        // squared: a place this many variances
 constexpr double kAstray = 9;            // squared, of a window's surface off the whole one, in variances of both
 
 /// Normal equations of a polynomial of the residuals over the distance from the seam.
-struct Profile {
+struct BendProfile {
     static constexpr int kTerms = 3;
     using Vector = Eigen::Matrix<double, kTerms, 1>;
     using Matrix = Eigen::Matrix<double, kTerms, kTerms>;
@@ -37,7 +37,7 @@ struct Profile {
         A += w * row(u) * row(u).transpose();
         b += w * r * row(u);
     }
-    Profile& operator+=(const Profile& o) {
+    BendProfile& operator+=(const BendProfile& o) {
         A += o.A, b += o.b;
         return *this;
     }
@@ -45,23 +45,23 @@ struct Profile {
 
 /// How the flank bends off the surface across the seam, alike along all of it: by how much at the seam, mm.
 struct Bend {
-    Profile::Vector c = Profile::Vector::Zero();
+    BendProfile::Vector c = BendProfile::Vector::Zero();
     double variance = 0;  ///< of c[0], mm^2
 };
 
 // The quadratic term is shrunk by its share of noise, which blocks of points may share; the others follow it.
 Bend bend_of(const Pool& pool, const SurfaceFit& surface, double unit_u) {
-    Profile all;
-    std::vector<Profile::Vector> influence;
+    BendProfile all;
+    std::vector<BendProfile::Vector> influence;
     for (std::size_t i = 0; i < pool.points.size(); ++i) {
         all.add(pool.u[i] / unit_u, surface.distance(pool.points[i]), surface.weight(pool.points[i]));
     }
-    const Profile::Matrix cofactors = all.A.ldlt().solve(Profile::Matrix::Identity());
-    const Profile::Vector c = cofactors * all.b;
+    const BendProfile::Matrix cofactors = all.A.ldlt().solve(BendProfile::Matrix::Identity());
+    const BendProfile::Vector c = cofactors * all.b;
     for (std::size_t i = 0; i < pool.points.size(); ++i) {
-        const Profile::Vector row = Profile::row(pool.u[i] / unit_u);
+        const BendProfile::Vector row = BendProfile::row(pool.u[i] / unit_u);
         if (pool.station_block[i] >= influence.size()) {
-            influence.resize(pool.station_block[i] + 1, Profile::Vector::Zero());
+            influence.resize(pool.station_block[i] + 1, BendProfile::Vector::Zero());
         }
         influence[pool.station_block[i]] +=
             surface.weight(pool.points[i]) * (surface.distance(pool.points[i]) - row.dot(c)) * row;
@@ -90,16 +90,16 @@ struct Departure {
 // Straight lines through what is left of the residuals, over the distance from the seam, each of the places nearby.
 std::vector<std::optional<Departure>> departures(const std::vector<TrackPoint>& way, const Pool& pool,
                                                  const SurfaceFit& surface, const Bend& bend, double unit_u) {
-    std::vector<Profile> at(way.size());
+    std::vector<BendProfile> at(way.size());
     for (std::size_t i = 0; i < pool.points.size(); ++i) {
         const double u = pool.u[i] / unit_u;
-        at[pool.place[i]].add(u, surface.distance(pool.points[i]) - Profile::row(u).dot(bend.c),
+        at[pool.place[i]].add(u, surface.distance(pool.points[i]) - BendProfile::row(u).dot(bend.c),
                               surface.weight(pool.points[i]));
     }
     const double variance = surface.scale() * surface.scale() * pool.correlation;
     std::vector<std::optional<Departure>> found(way.size());
     for (std::size_t i = 0; i < way.size(); ++i) {
-        Profile sum;
+        BendProfile sum;
         for (std::size_t j = i > pool.reach ? i - pool.reach : 0; j < std::min(way.size(), i + pool.reach + 1); ++j) {
             sum += at[j];
         }

@@ -21,7 +21,7 @@ constexpr double kCertain = 4;      // sigmas
 constexpr double kParallel = 1e-3;  // rad: axes closer than that have no place where they are closest
 constexpr int kMostRounds = 30;
 
-using Values = Eigen::Matrix<double, kQuantities, 1>;
+using Quantities = Eigen::Matrix<double, kQuantities, 1>;
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 11, 1>;
 using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 11, 11>;
 using Jacobian = Eigen::Matrix<double, kQuantities, Eigen::Dynamic, 0, kQuantities, 11>;
@@ -44,7 +44,7 @@ public:
             std::visit([&](const auto& s) { return outward_normal(s, branch.origin()); }, header.shape());
         const Vector3d axis = std::get<Cylinder>(branch.shape()).axis;
         outwards_ = out.dot(axis) < 0 ? -1 : 1;
-        const Values start = at(Step::Zero(parameters()));
+        const Quantities start = at(Step::Zero(parameters()));
         offset_sign_ = start[kOffset] < 0 ? -1 : 1;
         angle_sign_ = start[kAngle] > std::numbers::pi / 2 ? -1 : 1;
         if (std::holds_alternative<Plane>(header.shape())) {
@@ -94,10 +94,10 @@ public:
 
     // Smooth in the steps: an offset goes through 0, and an angle through 90 deg, without a kink. 0 for what the header
     // does not have.
-    Values at(const Step& x) const {
+    Quantities at(const Step& x) const {
         const Cylinder b = branch(x);
         const SurfaceFit::Shape shape = header(x);
-        Values v = Values::Zero();
+        Quantities v = Quantities::Zero();
         v[kBranchRadius] = b.radius;
         if (const auto* plane = std::get_if<Plane>(&shape)) {
             v[kAngle] =
@@ -167,7 +167,7 @@ Posterior update(const Pair& pair, const Nominals& nominals) {
     }
     const Covariance prior = pair.covariance();
     for (int round = 0; round < kMostRounds; ++round) {
-        const Values at = pair.at(posterior.step);
+        const Quantities at = pair.at(posterior.step);
         const Jacobian all = pair.derivatives(posterior.step);
         Eigen::MatrixXd H(n, pair.parameters());
         Eigen::VectorXd off(n), variance(n);
@@ -204,7 +204,7 @@ Nominals checked(const SaddleNominals& given) {
 
 // Why the branch's wall is not sure to meet the header all round: for two cylinders and for a sphere, whose wall the
 // generator line furthest out passes at r + offset from the middle.
-std::optional<std::string> too_wide(const Values& at, const Jacobian& by, const Covariance& covariance) {
+std::optional<std::string> too_wide(const Quantities& at, const Jacobian& by, const Covariance& covariance) {
     const double sign = at[kOffset] < 0 ? -1 : 1;
     const double margin = at[kHeaderRadius] - at[kBranchRadius] - sign * at[kOffset];
     const Eigen::RowVectorXd row = by.row(kHeaderRadius) - by.row(kBranchRadius) - sign * by.row(kOffset);
@@ -236,7 +236,7 @@ std::variant<SaddleFit, NoSaddle> fit_saddle(const SurfaceFit& branch, const Sur
         pair.prefer(given.angle_rad->value);
     }
     const Posterior posterior = update(pair, nominals);
-    const Values at = pair.at(posterior.step);
+    const Quantities at = pair.at(posterior.step);
     if (pair.has(kAngle) && std::abs(std::sin(at[kAngle])) < kParallel) {
         return NoSaddle{"the branch runs along the header"};
     }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <Eigen/Dense>
 
+#include "stages/angle.hpp"
 #include "stages/fit/chi_squared.hpp"
 #include "stages/fit/smoothing.hpp"
 #include "stages/geometry/flank_surface.hpp"
@@ -19,7 +19,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLeastTurns = 0.5;   // of the seam about a pipe: less is a bent plate
 constexpr double kOutOfRound = 0.02;  // EN 10210-2, EN 10219-2: largest less least diameter, over the nominal one
 constexpr double kModelTolerance_mm = 1e-5;

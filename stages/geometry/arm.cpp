@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/LU>
+
+#include "stages/angle.hpp"
 
 namespace seampath {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kMmPerM = 1000;
 
 // Angles a limit and its own rounding differ by.

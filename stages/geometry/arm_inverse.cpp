@@ -5,9 +5,11 @@
 
 #include <Eigen/Cholesky>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/arm.hpp"
 #include "stages/geometry/pose.hpp"
+#include "stages/geometry/quadric.hpp"
 
 namespace seampath {
 namespace {
@@ -15,8 +17,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Solutions = std::vector<JointAngles>;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // Axes are parallel, or meet, to this (unit vectors; mm).
 constexpr double kParallel = 1e-9, kMeet_mm = 1e-5;
@@ -39,10 +39,6 @@ constexpr double kSame = 1e-7;
 
 Matrix3d turn(const Vector3d& axis, double angle) {
     return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-}
-
-Vector3d across(const Vector3d& v, const Vector3d& axis) {
-    return v - v.dot(axis) * axis;
 }
 
 /// Subproblem 1: the turn about k that takes p nearest to q.

@@ -5,15 +5,10 @@
 #include <utility>
 
 #include "stages/error.hpp"
+#include "stages/geometry/gauss_legendre.hpp"
 
 namespace seampath {
 namespace {
-
-// Eight-point Gauss-Legendre on [-1, 1] (Abramowitz & Stegun, table 25.4).
-constexpr std::array<double, 4> kGaussNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                           0.9602898564975363};
-constexpr std::array<double, 4> kGaussWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                             0.1012285362903763};
 
 // Pieces of the arc-length table per knot span: |c'| is no polynomial, short pieces keep the quadrature at rounding
 // level.
@@ -25,13 +20,7 @@ double wrap(double u, double first, double period) {
 }
 
 double speed_integral(const CubicBSpline& curve, double a, double b) {
-    const double half = 0.5 * (b - a), middle = 0.5 * (a + b);
-    double sum = 0;
-    for (std::size_t k = 0; k < kGaussNode.size(); ++k) {
-        sum += kGaussWeight[k] * (derivative(curve, middle - half * kGaussNode[k]).norm() +
-                                  derivative(curve, middle + half * kGaussNode[k]).norm());
-    }
-    return half * sum;
+    return gauss_legendre([&](double u) { return derivative(curve, u).norm(); }, a, b);
 }
 
 template <class Weights>

@@ -54,7 +54,7 @@ Level robust_level(const std::vector<double>& y, double least_scale) {
 }
 
 // Points of one view in bins along the edge: on a strip of the plate, and from there over the edge.
-struct Counts {
+struct StripCounts {
     std::vector<double> inner, outer;
     double bin = 0;    // mm
     double below = 0;  // points right below the edge, less those as far above it
@@ -65,10 +65,10 @@ struct Strip {
     double width() const { return end - begin; }
 };
 
-Counts count(const Pointers& points, const EdgeLook& look, const Strip& strip, std::size_t bins) {
+StripCounts count(const Pointers& points, const EdgeLook& look, const Strip& strip, std::size_t bins) {
     const double gate = kTopGate * look.noise;
-    Counts counts{std::vector<double>(bins, 0), std::vector<double>(bins, 0),
-                  2 * look.along / static_cast<double>(bins), 0};
+    StripCounts counts{std::vector<double>(bins, 0), std::vector<double>(bins, 0),
+                       2 * look.along / static_cast<double>(bins), 0};
     for (const EdgePoint* q : points) {
         const auto i = std::min(bins - 1, static_cast<std::size_t>(std::max(0.0, (q->s + look.along) / counts.bin)));
         const bool on_top = std::abs(q->off) <= gate;
@@ -97,7 +97,7 @@ void add_counted(Edge& edge, std::uint32_t view, const Pointers& points, const E
     if (bins < kLeastBins) {
         return;
     }
-    const Counts counts = count(points, look, strip, bins);
+    const StripCounts counts = count(points, look, strip, bins);
     std::vector<double> sorted = counts.inner, distance, place;
     const double least = 0.5 * quantile(sorted, 0.5);
     for (std::size_t i = 0; i < bins; ++i) {

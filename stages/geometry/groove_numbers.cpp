@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Dense>
 
@@ -10,14 +9,9 @@ namespace seampath {
 namespace {
 
 using Eigen::Vector2d;
-using Values = GrooveNumbers::Vector;
+using Numbers = GrooveNumbers::Vector;
 
 enum Number { kRootA, kRootH, kGap, kMismatch, kBevel1, kBevel2, kIncluded, kDepth, kArea };
-constexpr double kSquare = 8 * std::numbers::pi / 180;  // a side more upright than this has no bevel
-
-double cross(const Vector2d& a, const Vector2d& b) {
-    return a[0] * b[1] - a[1] * b[0];
-}
 
 /// Where two faces' lines meet: Newton's method on both distances along them.
 Vector2d meet(const GrooveFace& f, const GrooveFace& g) {
@@ -81,7 +75,7 @@ Ends ends_of(const GrooveFit& fit, const GrooveRoot& root) {
     return e;
 }
 
-Values values_of(const GrooveFit& fit, const GrooveRoot& root) {
+Numbers values_of(const GrooveFit& fit, const GrooveRoot& root) {
     const Ends e = ends_of(fit, root);
     const Vector2d across(e.up[1], -e.up[0]), middle = 0.5 * (e.end[0] + e.end[1]);
     std::array<Vector2d, 2> tangent;
@@ -92,7 +86,7 @@ Values values_of(const GrooveFit& fit, const GrooveRoot& root) {
         bevel[k] = bevel_angle(fit, k, half);
         depth[k] = (e.corner[k] - e.end[k]).dot(e.top_normal[k]);
     }
-    Values v;
+    Numbers v;
     v[kRootA] = middle[0];
     v[kRootH] = middle[1];
     v[kGap] = (e.end[1] - e.end[0]).dot(across);
@@ -108,7 +102,7 @@ Values values_of(const GrooveFit& fit, const GrooveRoot& root) {
 
 /// Derivative of the numbers by one parameter: by differences, of which the numbers' curvature asks no care.
 template <class Move>
-Values derivative(const GrooveFit& fit, const GrooveRoot& root, Move&& move) {
+Numbers derivative(const GrooveFit& fit, const GrooveRoot& root, Move&& move) {
     constexpr double kStep = 1e-4;  // mm
     GrooveFit above = fit, below = fit;
     move(above, kStep);
@@ -148,10 +142,10 @@ std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& 
     if (!numbers.value.allFinite()) {
         return std::nullopt;
     }
-    std::vector<std::array<Values, 2>> by_view;  // of each view's shift along a and h
-    const auto view_at = [&](std::size_t v) -> std::array<Values, 2>& {
+    std::vector<std::array<Numbers, 2>> by_view;  // of each view's shift along a and h
+    const auto view_at = [&](std::size_t v) -> std::array<Numbers, 2>& {
         if (v >= by_view.size()) {
-            by_view.resize(v + 1, {Values::Zero(), Values::Zero()});
+            by_view.resize(v + 1, {Numbers::Zero(), Numbers::Zero()});
         }
         return by_view[v];
     };
@@ -164,7 +158,7 @@ std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& 
             }
             numbers.variance += (J * face.covariance * J.transpose()).diagonal();
             for (std::size_t v = 0; v < face.shift.size(); ++v) {
-                const Values moved = J * face.shift[v];
+                const Numbers moved = J * face.shift[v];
                 view_at(v)[0] += face.n[0] * moved;
                 view_at(v)[1] += face.n[1] * moved;
             }
@@ -172,7 +166,7 @@ std::optional<GrooveNumbers> numbers_of(const GrooveFit& fit, const GrooveRoot& 
     }
     for (std::size_t k = 0; k < 2; ++k) {
         const BevelDepth& lower = fit.lower[k];
-        const Values J = derivative(fit, root, [&](GrooveFit& f, double step) { f.lower[k].depth += step; });
+        const Numbers J = derivative(fit, root, [&](GrooveFit& f, double step) { f.lower[k].depth += step; });
         numbers.variance += lower.sigma * lower.sigma * J.cwiseAbs2();
         // Points of a bevel's end that move along it carry the end with them, and not the top.
         for (std::size_t v = 0; v < lower.share.size(); ++v) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Dense>
 
@@ -9,11 +8,10 @@
 namespace seampath {
 namespace {
 
-constexpr double kSquare = 8 * std::numbers::pi / 180;  // a side more upright than this has no bevel
-constexpr double kDeep = 0.8;         // quantile of the depths at which an end is seen: shadows only make them less
-constexpr double kApart = 3;          // sigmas
-constexpr double kLeastNoise = 0.02;  // mm
-constexpr double kWidestRoot = 4;     // mm; ISO 9692-1 has no wider gap at the root of V, Y, U and single-bevel grooves
+constexpr double kDeep = 0.8;           // quantile of the depths at which an end is seen: shadows only make them less
+constexpr double kApart = 3;            // sigmas
+constexpr double kLeastScatter = 0.02;  // mm
+constexpr double kWidestRoot = 4;  // mm; ISO 9692-1 has no wider gap at the root of V, Y, U and single-bevel grooves
 
 // Gives the bevels of side k what all places tell of its angle, as far as it varies by no more than noise: the lines
 // of places that see little of the bevel are carried on further than they know themselves.
@@ -56,18 +54,18 @@ void share_angle(std::span<GrooveFit> fits, std::size_t k, double step, double w
 }
 
 /// Of one side, along the groove.
-struct Level {
+struct BevelLevel {
     double depth = 0, variance = 0;
     double scatter = 0;  ///< mm, of the depths that it is the middle of
     double share = 0;    ///< of the places, that saw it
     std::vector<double> views;
 
     bool holds(const BevelDepth& seen) const {
-        return std::abs(seen.depth - depth) < kApart * std::max({scatter, seen.sigma, kLeastNoise});
+        return std::abs(seen.depth - depth) < kApart * std::max({scatter, seen.sigma, kLeastScatter});
     }
 };
 
-std::optional<Level> level_of(std::span<const GrooveFit> fits, std::size_t k, double step, double window) {
+std::optional<BevelLevel> level_of(std::span<const GrooveFit> fits, std::size_t k, double step, double window) {
     std::vector<double> depths;
     for (const GrooveFit& fit : fits) {
         if (fit.seen[k]) {
@@ -77,7 +75,7 @@ std::optional<Level> level_of(std::span<const GrooveFit> fits, std::size_t k, do
     if (depths.empty()) {
         return std::nullopt;
     }
-    Level level;
+    BevelLevel level;
     level.depth = quantile(depths, kDeep);
     for (int round = 0; round < 4; ++round) {
         std::vector<double> near, off;
@@ -96,7 +94,7 @@ std::optional<Level> level_of(std::span<const GrooveFit> fits, std::size_t k, do
         level.scatter = 1.4826 * quantile(off, 0.5);
         level.share = static_cast<double>(near.size()) / static_cast<double>(fits.size());
         const double independent = std::max(1.0, static_cast<double>(near.size()) * step / window);
-        level.variance = std::pow(std::max(level.scatter, kLeastNoise), 2) / independent;
+        level.variance = std::pow(std::max(level.scatter, kLeastScatter), 2) / independent;
     }
     double count = 0;
     for (const GrooveFit& fit : fits) {
@@ -115,7 +113,7 @@ std::optional<Level> level_of(std::span<const GrooveFit> fits, std::size_t k, do
 }
 
 // What a place keeps of its own: as far as depths scatter by more than noise.
-BevelDepth lower_end(const std::optional<BevelDepth>& seen, const Level& level) {
+BevelDepth lower_end(const std::optional<BevelDepth>& seen, const BevelLevel& level) {
     BevelDepth lower{level.depth, 0, level.views};
     if (seen && level.holds(*seen)) {
         const double noise = seen->sigma * seen->sigma, own = std::max(0.0, level.scatter * level.scatter - noise);
@@ -137,24 +135,24 @@ double median(std::span<const GrooveFit> fits, const GrooveRoot& root, int numbe
 }
 
 // Whether a side's bevel ends where it runs into the other's.
-bool meets(std::span<const GrooveFit> fits, const Level& level, std::size_t k) {
+bool meets(std::span<const GrooveFit> fits, const BevelLevel& level, std::size_t k) {
     std::vector<double> depths;
     for (const GrooveFit& fit : fits) {
         depths.push_back(crossing_depth(fit, k));
     }
-    return std::abs(quantile(depths, 0.5) - level.depth) < kApart * std::sqrt(level.variance) + 2 * kLeastNoise;
+    return std::abs(quantile(depths, 0.5) - level.depth) < kApart * std::sqrt(level.variance) + 2 * kLeastScatter;
 }
 
 // Whether a bevel's end is that of the other plate's shadow: less deep than the other bevel's. Plates are prepared
 // alike, to the same depth below their tops, or where unlike plates lie flush on their roots, to the same height.
 // `higher`: by how much the other top is higher.
-bool is_shadow(const Level& level, const Level& other, double higher) {
+bool is_shadow(const BevelLevel& level, const BevelLevel& other, double higher) {
     const double sure = kApart * std::sqrt(level.variance + other.variance), less = other.depth - level.depth;
     return less > sure && std::abs(less - higher) > sure;
 }
 
 // Whether a second witness tells of an end: another view, or the other bevel, which ends about as deep.
-bool confirmed(const Level& level, const std::optional<Level>& other) {
+bool confirmed(const BevelLevel& level, const std::optional<BevelLevel>& other) {
     constexpr double kLeastShare = 0.02;  // of a view that is a seventh as sure as the others
     constexpr double kAlike = 0.05;       // of the depth
     const auto views = std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > kLeastShare; });
@@ -175,7 +173,7 @@ void doubt_ends(std::span<GrooveFit> fits) {
 std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, double window) {
     share_angle(fits, 0, step, window);
     share_angle(fits, 1, step, window);
-    std::array<std::optional<Level>, 2> level{level_of(fits, 0, step, window), level_of(fits, 1, step, window)};
+    std::array<std::optional<BevelLevel>, 2> level{level_of(fits, 0, step, window), level_of(fits, 1, step, window)};
     if (fits.empty() || (!level[0] && !level[1])) {
         return std::nullopt;
     }
@@ -183,12 +181,12 @@ std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, dou
     constexpr int kGap = 2, kMismatch = 3, kBevel1 = 4;
     for (GrooveFit& fit : fits) {
         for (std::size_t k = 0; k < 2; ++k) {
-            const Level& known = level[k] ? *level[k] : *level[1 - k];
+            const BevelLevel& known = level[k] ? *level[k] : *level[1 - k];
             fit.lower[k] = lower_end(fit.seen[k], known);
         }
     }
     for (int k = 0; k < 2; ++k) {
-        if (median(fits, {}, kBevel1 + k) < kSquare) {
+        if (median(fits, {}, kBevel1 + k) < kSquareSide) {
             root.square = k;
         }
     }

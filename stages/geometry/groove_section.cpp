@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 constexpr double kGate = 4;           // noises
 constexpr double kMostPoints = 1200;  // of a face: more add time and, their noise being shared, nothing to the fit
 constexpr double kRoughly = 300;      // of them tell where to look
-constexpr std::size_t kFewest = 30;
+constexpr std::size_t kFewestInSection = 30;
 constexpr double kDeepest = 80;  // mm along a bevel
 
 Vector2d normal_of(const Vector2d& d, int side) {
@@ -57,7 +57,7 @@ std::vector<FacePoint> points_of(std::span<const GroovePoint> points, const Groo
 }
 
 bool fit(GrooveFace& face, const std::vector<FacePoint>& points, double along, double most, const ScanScale& scale) {
-    if (points.size() < kFewest) {
+    if (points.size() < kFewestInSection) {
         return false;
     }
     double length = 0;
@@ -96,10 +96,6 @@ bool fit(GrooveFace& face, const std::vector<FacePoint>& points, double along, d
         face.shift[view] += quadric.weight(i) * pick * cofactors * QuadraticFit::row(quadric.u(i), quadric.s(i));
     }
     return true;
-}
-
-double cross(const Vector2d& a, const Vector2d& b) {
-    return a[0] * b[1] - a[1] * b[0];
 }
 
 // Along the first face, where its line runs into the second's; straight lines through the faces' own origins.

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "stages/angle.hpp"
 #include "stages/geometry/density_edge.hpp"
 #include "stages/geometry/flank.hpp"
 #include "stages/geometry/groove_points.hpp"
@@ -18,6 +19,14 @@
 /// section, corners being left out, and intersected; a bevel's lower end is where its points end. Side 0 is the plate
 /// on the right of travel, with the seam's first flank, side 1 the one on the left.
 namespace seampath {
+
+/// A side more upright than this has no bevel; rad.
+inline constexpr double kSquareSide = 8 * kDegree;
+
+/// Third component of the cross product of vectors in the section.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a[0] * b[1] - a[1] * b[0];
+}
 
 /// Where the faces of a section are, well enough to find their points.
 struct GrooveShape {

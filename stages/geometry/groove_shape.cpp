@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "stages/angle.hpp"
 #include "stages/geometry/groove_section.hpp"
 
 namespace seampath {
@@ -11,7 +11,6 @@ using Eigen::Vector2d;
 
 constexpr double kFar = 60;  // mm, of a bevel
 constexpr double kHalf = 4;  // mm of the groove that are looked at, each way
-constexpr double kDegree = std::numbers::pi / 180;
 
 // The direction, out of the groove, of the line through the corner on which most points lie.
 Vector2d top_beside(std::span<const GroovePoint> points, const Vector2d& corner, const Vector2d& bevel, double turn,

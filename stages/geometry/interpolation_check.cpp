@@ -41,10 +41,10 @@ double distance(const Interpolant& line, std::span<const double> nodes, const Ve
     return best;
 }
 
-struct Moments {
+struct Statistics {
     double mean = 0, squares = 0, max = 0;  ///< squares: their mean
 
-    explicit Moments(const std::vector<double>& values) {
+    explicit Statistics(const std::vector<double>& values) {
         for (const double v : values) {
             mean += v;
             squares += v * v;
@@ -197,7 +197,7 @@ CheckStatistics check_points(const Interpolant& line, std::span<const Vector2d> 
         s.error.push_back(std::abs(p.y() - line.value(p.x())));
         s.distance.push_back(distance(line, nodes, p, s.error.back()));
     }
-    const Moments error(s.error), away(s.distance);
+    const Statistics error(s.error), away(s.distance);
     const double n = static_cast<double>(points.size());
     s.mean = error.mean;
     s.rms = std::sqrt(error.squares);

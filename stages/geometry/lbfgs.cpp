@@ -38,7 +38,7 @@ VectorXd times_inverse_hessian(const std::deque<Pair>& pairs, const VectorXd& g)
 }
 
 /// A point with its value and gradient.
-struct Point {
+struct Iterate {
     VectorXd x;
     double value;
     VectorXd gradient;
@@ -49,8 +49,8 @@ class Search {
 public:
     Search(const Differentiable& f, int max_evaluations) : f_(f), left_(max_evaluations) {}
 
-    Point evaluate(VectorXd x) {
-        Point p{std::move(x), 0, {}};
+    Iterate evaluate(VectorXd x) {
+        Iterate p{std::move(x), 0, {}};
         p.gradient.resize(p.x.size());
         p.value = f_(p.x, p.gradient);
         --left_;
@@ -59,13 +59,13 @@ public:
     }
 
     /// A step along d that keeps both weak Wolfe conditions, or the best that is left when evaluations or digits end.
-    Point step(const Point& from, const VectorXd& d, double length) {
+    Iterate step(const Iterate& from, const VectorXd& d, double length) {
         constexpr double kDecrease = 1e-4, kSlope = 0.9;
         const double slope = from.gradient.dot(d);
         double low = 0, high = std::numeric_limits<double>::infinity();
-        Point best = from;
+        Iterate best = from;
         while (left_ > 0) {
-            const Point p = evaluate(from.x + length * d);
+            const Iterate p = evaluate(from.x + length * d);
             if (!(p.value <= from.value + kDecrease * length * slope)) {  // also when not finite
                 high = length;
             } else {
@@ -97,7 +97,7 @@ private:
 
 Minimum minimise(const Differentiable& f, const VectorXd& start, double tolerance, int max_evaluations) {
     Search search(f, max_evaluations);
-    Point at = search.evaluate(start);
+    Iterate at = search.evaluate(start);
     std::deque<Pair> pairs;
     bool converged = false;
     while (search.left() > 0) {
@@ -108,7 +108,7 @@ Minimum minimise(const Differentiable& f, const VectorXd& start, double toleranc
             break;
         }
         // Without curvature known, a step that would move by about one unit at most.
-        const Point next = search.step(at, d, pairs.empty() ? std::min(1.0, 1 / d.norm()) : 1.0);
+        const Iterate next = search.step(at, d, pairs.empty() ? std::min(1.0, 1 / d.norm()) : 1.0);
         if (!(next.value < at.value)) {
             converged = -slope <= 1e-12 * std::abs(at.value);
             if (converged || pairs.empty()) {

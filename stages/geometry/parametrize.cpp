@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLargest = 1e100;  // so that no square overflows
+constexpr double kLargestCoordinate = 1e100;  // so that no square overflows
 
 void check_factors(const std::vector<double>& factors, const std::string& what, Index dimensions) {
     if (!factors.empty() && static_cast<Index>(factors.size()) != dimensions) {
@@ -40,7 +40,7 @@ void check(std::span<const VectorXd> points, const ParametrizeOptions& options) 
                          " points; at least 2 of at least one coordinate were needed; add rows");
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (points[i].size() != points[0].size() || !(points[i].cwiseAbs().array() <= kLargest).all()) {
+        if (points[i].size() != points[0].size() || !(points[i].cwiseAbs().array() <= kLargestCoordinate).all()) {
             throw InputError("parametrize: row " + std::to_string(i + 1) +
                              " is not finite, beyond 1e100, or differs in dimension from the first; correct it");
         }

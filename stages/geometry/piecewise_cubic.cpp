@@ -9,12 +9,12 @@
 namespace seampath {
 namespace {
 
-using Values = std::vector<double>;
+using Ordinates = std::vector<double>;
 
 /// Lengths h and slopes m of the chords; h[i] and m[i] belong to the interval after node i.
 struct Chords {
-    Values h;
-    Values m;
+    Ordinates h;
+    Ordinates m;
 
     Chords(std::span<const double> x, std::span<const double> y) {
         ensure(x.size() >= 2 && x.size() == y.size(), "two nodes at least, a value for each");
@@ -27,9 +27,11 @@ struct Chords {
 };
 
 /// b and d from c by (34), (32), with c_{n+1} of (37) as its last value.
-PiecewiseCubic from_second(std::span<const double> x, std::span<const double> y, const Chords& chord, const Values& c) {
+PiecewiseCubic from_second(std::span<const double> x, std::span<const double> y, const Chords& chord,
+                           const Ordinates& c) {
     const std::size_t n = chord.intervals();
-    PiecewiseCubic s{{x.begin(), x.end()}, {y.begin(), y.end() - 1}, Values(n), {c.begin(), c.end() - 1}, Values(n)};
+    PiecewiseCubic s{
+        {x.begin(), x.end()}, {y.begin(), y.end() - 1}, Ordinates(n), {c.begin(), c.end() - 1}, Ordinates(n)};
     for (std::size_t i = 0; i < n; ++i) {
         s.b[i] = chord.m[i] - chord.h[i] * (c[i + 1] + 2 * c[i]) / 3;
         s.d[i] = (c[i + 1] - c[i]) / (3 * chord.h[i]);
@@ -39,9 +41,10 @@ PiecewiseCubic from_second(std::span<const double> x, std::span<const double> y,
 
 /// Hermite's cubics: slopes at the nodes.
 PiecewiseCubic from_slopes(std::span<const double> x, std::span<const double> y, const Chords& chord,
-                           const Values& slope) {
+                           const Ordinates& slope) {
     const std::size_t n = chord.intervals();
-    PiecewiseCubic s{{x.begin(), x.end()}, {y.begin(), y.end() - 1}, {slope.begin(), slope.end() - 1}, Values(n), {}};
+    PiecewiseCubic s{
+        {x.begin(), x.end()}, {y.begin(), y.end() - 1}, {slope.begin(), slope.end() - 1}, Ordinates(n), {}};
     for (std::size_t i = 0; i < n; ++i) {
         const double h = chord.h[i], m = chord.m[i];
         s.c[i] = (3 * m - 2 * slope[i] - slope[i + 1]) / h;
@@ -52,7 +55,7 @@ PiecewiseCubic from_slopes(std::span<const double> x, std::span<const double> y,
 
 /// The equations (36) for the c of the inner nodes; those of the ends are to be filled in, c = 0 until then.
 struct Equations {
-    Values lower, diagonal, upper, right;
+    Ordinates lower, diagonal, upper, right;
 
     explicit Equations(const Chords& chord)
         : lower(chord.intervals() + 1, 0), diagonal(lower.size(), 1), upper(lower.size(), 0), right(lower.size(), 0) {
@@ -64,8 +67,8 @@ struct Equations {
         }
     }
 
-    Values solve() const {
-        Values c = right;
+    Ordinates solve() const {
+        Ordinates c = right;
         Tridiagonal(lower, diagonal, upper).solve(c);
         return c;
     }
@@ -129,7 +132,7 @@ PiecewiseCubic not_a_knot_spline(std::span<const double> x, std::span<const doub
     const auto& h = chord.h;
     if (n < 3) {
         const double c = n == 1 ? 0 : (chord.m[1] - chord.m[0]) / (h[0] + h[1]);
-        return from_second(x, y, chord, Values(n + 1, c));
+        return from_second(x, y, chord, Ordinates(n + 1, c));
     }
     // d_1 = d_2 and d_{n-1} = d_n give c of the ends by those of their two neighbours.
     Equations equations(chord);
@@ -140,7 +143,7 @@ PiecewiseCubic not_a_knot_spline(std::span<const double> x, std::span<const doub
     equations.diagonal[n - 1] += h[n - 1] * (1 + last);
     equations.lower[n - 1] -= h[n - 1] * last;
     equations.upper[n - 1] = 0;
-    Values c = equations.solve();
+    Ordinates c = equations.solve();
     c[0] = c[1] * (1 + first) - c[2] * first;
     c[n] = c[n - 1] * (1 + last) - c[n - 2] * last;
     return from_second(x, y, chord, c);
@@ -155,8 +158,8 @@ PiecewiseCubic periodic_spline(std::span<const double> x, std::span<const double
     equations.diagonal[0] = 2 * (chord.h[n - 1] + chord.h[0]);
     equations.upper[0] = chord.h[0];
     equations.right[0] = 3 * (chord.m[0] - chord.m[n - 1]);
-    const auto ring = [n](const Values& v) { return std::span(v).first(n); };
-    Values c =
+    const auto ring = [n](const Ordinates& v) { return std::span(v).first(n); };
+    Ordinates c =
         solve_cyclic(ring(equations.lower), ring(equations.diagonal), ring(equations.upper), ring(equations.right));
     c.push_back(c[0]);
     return from_second(x, y, chord, c);
@@ -169,13 +172,13 @@ PiecewiseCubic akima_spline(std::span<const double> x, std::span<const double> y
         return linear_spline(x, y);
     }
     // m[i + 2] is the slope of chord i; two more beyond either end, as those of a parabola go on.
-    Values m(n + 4);
+    Ordinates m(n + 4);
     std::copy(chord.m.begin(), chord.m.end(), m.begin() + 2);
     m[1] = 2 * m[2] - m[3];
     m[0] = 2 * m[1] - m[2];
     m[n + 2] = 2 * m[n + 1] - m[n];
     m[n + 3] = 2 * m[n + 2] - m[n + 1];
-    Values slope(n + 1);
+    Ordinates slope(n + 1);
     double most = 0;
     for (std::size_t i = 0; i + 1 < m.size(); ++i) {
         most = std::max(most, std::abs(m[i + 1] - m[i]));
@@ -197,7 +200,7 @@ PiecewiseCubic pchip_spline(std::span<const double> x, std::span<const double> y
     if (n == 1) {
         return linear_spline(x, y);
     }
-    Values slope(n + 1, 0);
+    Ordinates slope(n + 1, 0);
     for (std::size_t i = 1; i < n; ++i) {
         if (m[i - 1] * m[i] > 0) {
             const double w1 = 2 * h[i] + h[i - 1], w2 = h[i] + 2 * h[i - 1];
@@ -211,7 +214,7 @@ PiecewiseCubic pchip_spline(std::span<const double> x, std::span<const double> y
 
 PiecewiseCubic linear_spline(std::span<const double> x, std::span<const double> y) {
     const Chords chord(x, y);
-    const Values zero(chord.intervals(), 0);
+    const Ordinates zero(chord.intervals(), 0);
     return {{x.begin(), x.end()}, {y.begin(), y.end() - 1}, chord.m, zero, zero};
 }
 

@@ -41,9 +41,9 @@ double kth_smallest(std::vector<double>& values, std::size_t k) {
     return *kth;
 }
 
-using Values = Eigen::Map<Eigen::ArrayXd>;
+using Entries = Eigen::Map<Eigen::ArrayXd>;
 
-Values array(std::vector<double>& values) {
+Entries array(std::vector<double>& values) {
     return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
@@ -112,8 +112,8 @@ void QuadraticFit::take_curvature() {
 
 // By arrays, which use the processor's vector registers.
 void QuadraticFit::measure_residuals() {
-    const Values u = array(u_), s = array(s_), z = array(z_);
-    Values straight = array(straight_), residual = array(residual_);
+    const Entries u = array(u_), s = array(s_), z = array(z_);
+    Entries straight = array(straight_), residual = array(residual_);
     straight = z - (z - middle_) * (0.5 * bulge_ * (z - middle_) + tilt_u_ * u + tilt_s_ * s);
     residual = straight - (c_[0] + c_[1] * u + c_[2] * s + c_[3] * u * u + c_[4] * u * s + c_[5] * s * s);
     array(magnitude_) = residual.abs();

@@ -1,21 +1,20 @@
 #include "stages/geometry/saddle.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
+#include "stages/geometry/gauss_legendre.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // Least cosine between branch axis and header normal. At 1e-4 (radii equal to 5e-9 of themselves) the curve turns
 // through 90 degrees within a ten-thousandth of its radius: to a torch, and soon to double precision, a corner.
@@ -31,12 +30,6 @@ constexpr int kLooks = 720;
 // Pieces that the arc-length table begins with, and how often one may be halved.
 constexpr int kFirstPieces = 16, kMostHalvings = 40;
 constexpr double kPieceTolerance = 1e-13;
-
-// Eight-point Gauss-Legendre on [-1, 1] (Abramowitz & Stegun, table 25.4).
-constexpr std::array<double, 4> kGaussNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                           0.9602898564975363};
-constexpr std::array<double, 4> kGaussWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                             0.1012285362903763};
 
 std::string degrees(double rad) {
     return fixed(rad * 180 / std::numbers::pi, 2) + " deg";
@@ -226,12 +219,7 @@ double SaddleCurve::speed(double theta) const {
 }
 
 double SaddleCurve::speed_integral(double from, double to) const {
-    const double half = 0.5 * (to - from), middle = 0.5 * (from + to);
-    double sum = 0;
-    for (std::size_t k = 0; k < kGaussNode.size(); ++k) {
-        sum += kGaussWeight[k] * (speed(middle - half * kGaussNode[k]) + speed(middle + half * kGaussNode[k]));
-    }
-    return half * sum;
+    return gauss_legendre([this](double theta) { return speed(theta); }, from, to);
 }
 
 void SaddleCurve::add_pieces(double from, double to, double whole, double tolerance, int depth) {

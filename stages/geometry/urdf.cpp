@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <vector>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/xml.hpp"
 #include "stages/text.hpp"
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kMmPerM = 1000;
+constexpr double kMmPerMetre = 1000;
 
 // A chain longer than this goes round in circles.
 constexpr std::size_t kMostJoints = 200;
@@ -143,7 +143,7 @@ private:
         Isometry3d origin = Isometry3d::Identity();
         if (e.attributes.contains("xyz")) {
             const auto v = numbers(e, "xyz", 3);
-            origin.translation() = kMmPerM * Vector3d(v[0], v[1], v[2]);
+            origin.translation() = kMmPerMetre * Vector3d(v[0], v[1], v[2]);
         }
         if (e.attributes.contains("rpy")) {
             const auto v = numbers(e, "rpy", 3);
@@ -206,7 +206,6 @@ private:
     }
 
     ArmAxis axis_of(const Joint& joint, const Isometry3d& pose) const {
-        constexpr double kTurn = 2 * std::numbers::pi;
         const bool continuous = joint.type == "continuous";
         if (!(joint.axis.norm() > 0)) {
             fail(joint.line, "joint \"" + joint.name + "\" turns about no direction; an axis xyz was needed");

@@ -10,7 +10,7 @@
 namespace seampath {
 namespace {
 
-constexpr std::size_t kChunks = 2000;      // each holds a few rows of a view, and a view some dozen of them
+constexpr std::size_t kMostChunks = 2000;  // each holds a few rows of a view, and a view some dozen of them
 constexpr std::size_t kLeastInChunk = 50;  // points
 constexpr std::size_t kSampled = 200;      // of a chunk's points
 constexpr double kCells = 120;             // along the scan's extent
@@ -55,7 +55,7 @@ std::vector<std::size_t> view_starts(std::span<const Eigen::Vector3f> points) {
     if (points.size() < 4 * kBehind * kLeastInChunk) {
         return starts;
     }
-    const std::size_t size = std::max(kLeastInChunk, points.size() / kChunks), stride = 1 + size / kSampled;
+    const std::size_t size = std::max(kLeastInChunk, points.size() / kMostChunks), stride = 1 + size / kSampled;
     const Cells cells(points);
     std::unordered_map<std::uint64_t, std::size_t> seen;  // chunk in which the view first came to a cell
     for (std::size_t chunk = 0; chunk * size < points.size(); ++chunk) {

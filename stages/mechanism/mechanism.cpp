@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/mechanism/optimal.hpp"
 #include "stages/mechanism/walk.hpp"
@@ -18,7 +19,6 @@ namespace {
 using Eigen::Vector2d;
 using namespace mechanism;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kMostBeta = std::numbers::pi / 3;
 
 // A point may be outside the disc by rounding.

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/sampled_spline.hpp"
@@ -14,8 +15,6 @@ namespace seampath {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // A last step shorter than this share of the others is rounding and goes to the one before.
 constexpr double kLastStep = 1e-9;

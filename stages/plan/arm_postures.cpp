@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "stages/angle.hpp"
 
 namespace seampath::planning {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // A posture this far from the limits, and with this share of the arm's best manipulability, is as good as any.
 constexpr double kGoodMargin = 20 * kTurn / 360, kGoodDexterity = 0.1;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stages/angle.hpp"
 #include "stages/geometry/pose.hpp"
 #include "stages/plan/arm_postures.hpp"
 #include "stages/plan/text.hpp"
@@ -11,13 +12,11 @@
 namespace seampath::planning {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 // Between two poses of a chain.
 constexpr double kStep_mm = 5, kStepTurn = 2 * kDegree;
 
 // A roll of half a turn must be better than none by this much.
-constexpr double kRollCost = 0.05;
+constexpr double kTrackRollCost = 0.05;
 
 /// Follows one posture of the first pose at one roll.
 struct Followed {
@@ -97,7 +96,7 @@ std::variant<Track, Stop> track_at_one_roll(Postures& postures) {
                 continue;
             }
             const double score = score_of(postures, lifted.q);
-            const double worth = score - kRollCost * std::abs(postures.rolls()[roll]) / std::numbers::pi;
+            const double worth = score - kTrackRollCost * std::abs(postures.rolls()[roll]) / std::numbers::pi;
             if (worth > best_worth) {
                 best_worth = worth;
                 best = {std::move(lifted.q), std::vector<double>(size, postures.rolls()[roll]), score};

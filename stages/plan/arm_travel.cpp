@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "stages/angle.hpp"
 #include "stages/geometry/piecewise_cubic.hpp"
 #include "stages/geometry/pose.hpp"
 #include "stages/plan/arm_air.hpp"
@@ -14,8 +14,6 @@
 
 namespace seampath::planning {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180, kTurn = 2 * std::numbers::pi;
 
 // Rolls that are tried, and the most that an axis may turn from one pose of a way to the next, some 5 mm on.
 constexpr double kRollStep = 5 * kDegree, kMostStep = 20 * kDegree;

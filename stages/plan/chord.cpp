@@ -15,7 +15,7 @@ namespace {
 constexpr double kSampleShare = 1.0 / 256;
 
 // A flank sample so near to a piece's end, as a share of the piece, is there already.
-constexpr double kSame = 1e-6;
+constexpr double kSamePlace = 1e-6;
 
 // Where the pieces of c begin and end, and c'' is linear in between.
 std::vector<double> span_ends(const CubicBSpline& curve) {
@@ -64,7 +64,7 @@ Samples sample(const TorchPath& path, double tolerance_mm) {
         std::copy_if(std::upper_bound(flanks.begin(), flanks.end(), from), last, std::back_inserter(u),
                      [&](double flank) {
                          const double piece = (flank - from) / step;
-                         return std::abs(piece - std::round(piece)) > kSame;
+                         return std::abs(piece - std::round(piece)) > kSamePlace;
                      });
         std::sort(u.begin(), u.end());
         for (const double at : u) {

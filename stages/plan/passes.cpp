@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/sampled_spline.hpp"
@@ -15,15 +16,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
-
 // Sections between a knife's edge and a plane.
-constexpr double kLeastHalf = 2 * kRadPerDeg, kMostHalf = 80 * kRadPerDeg;
+constexpr double kLeastHalf = 2 * kDegree, kMostHalf = 80 * kDegree;
 
 constexpr std::size_t kMostPasses = 500;
 
 // Stations at which the section is looked at.
-constexpr int kLooks = 400;
+constexpr int kGrooveLooks = 400;
 
 // What a pass's curve may be off, as a share of the chord tolerance.
 constexpr double kCurveShare = 0.05;
@@ -64,7 +63,7 @@ public:
         const Vector3d sum = s.flanks.n1 + s.flanks.n2, bisector = sum - sum.dot(s.x) * s.x;
         const double opening =
             std::numbers::pi - std::atan2(s.flanks.n1.cross(s.flanks.n2).norm(), s.flanks.n1.dot(s.flanks.n2));
-        const double asked = o_.groove_angle_deg * kRadPerDeg;
+        const double asked = o_.groove_angle_deg * kDegree;
         s.root = o_.groove_root_mm;
         s.half = o_.groove == GrooveForm::fillet ? 0.5 * opening : 0.5 * asked;
         s.turn = o_.groove == GrooveForm::bevel1   ? 0.5 * (asked - opening)
@@ -72,8 +71,8 @@ public:
                                                    : 0;
         if (!(bisector.norm() > 0.05) || s.half < kLeastHalf || s.half > kMostHalf) {
             throw InputError(seam_text(seam_) + ": at station " + number(station) + " mm the groove opens by " +
-                             number(2 * s.half / kRadPerDeg) + " deg; " + number(2 * kLeastHalf / kRadPerDeg) + " to " +
-                             number(2 * kMostHalf / kRadPerDeg) +
+                             number(2 * s.half / kDegree) + " deg; " + number(2 * kLeastHalf / kDegree) + " to " +
+                             number(2 * kMostHalf / kDegree) +
                              " deg can be filled; set plan.groove to another form or to none");
         }
         const Vector3d middle = bisector.normalized();
@@ -129,7 +128,7 @@ struct Aim {
 Aim aim_of(const Section& s, const Bead& bead, const PlanOptions& o) {
     const double y = s.height(bead.below * s.area(o.groove_depth_mm));
     const double share = 1 - (2.0 * bead.place + 1) / bead.of;  // of half the width: towards flank 1
-    const double most = std::min(o.pass_tilt_deg * kRadPerDeg, s.half);
+    const double most = std::min(o.pass_tilt_deg * kDegree, s.half);
     const double side = bead.of > 1 ? share * bead.of / (bead.of - 1) : 0;  // 1 at the side of flank 1
     return {0.5 * share * s.width(y), y, -most * side};
 }
@@ -168,8 +167,8 @@ SeamModel model_of(const SeamModel& seam, int number_of_seam, const Groove& groo
     for (const FlankSample& flank : seam.flanks) {
         stations.push_back(flank.station_mm);
     }
-    for (int k = 0; k <= kLooks - (seam.closed ? 1 : 0); ++k) {
-        stations.push_back(groove.length() * k / kLooks);
+    for (int k = 0; k <= kGrooveLooks - (seam.closed ? 1 : 0); ++k) {
+        stations.push_back(groove.length() * k / kGrooveLooks);
     }
     std::sort(stations.begin(), stations.end());
     for (const double station : stations) {
@@ -199,9 +198,9 @@ std::vector<Pass> passes_of(const SeamModel& model, int seam, const PlanOptions&
     const Groove groove(model, seam, o);
     std::vector<Section> sections;
     Section mean;
-    for (int k = 0; k < kLooks; ++k) {
-        sections.push_back(groove.at(groove.length() * (k + 0.5) / kLooks));
-        mean.half += std::tan(sections.back().half) / kLooks;
+    for (int k = 0; k < kGrooveLooks; ++k) {
+        sections.push_back(groove.at(groove.length() * (k + 0.5) / kGrooveLooks));
+        mean.half += std::tan(sections.back().half) / kGrooveLooks;
     }
     mean.half = std::atan(mean.half);
     mean.root = o.groove_root_mm;
@@ -219,10 +218,10 @@ std::vector<Pass> passes_of(const SeamModel& model, int seam, const PlanOptions&
         for (const Section& s : sections) {
             const Aim aim = aim_of(s, bead, o);
             const double area = s.area(o.groove_depth_mm) / share;
-            f.across_mm += aim.across / kLooks;
-            f.up_mm += aim.up / kLooks;
-            f.tilt_rad += aim.tilt / kLooks;
-            f.area_mm2 += area / kLooks;
+            f.across_mm += aim.across / kGrooveLooks;
+            f.up_mm += aim.up / kGrooveLooks;
+            f.tilt_rad += aim.tilt / kGrooveLooks;
+            f.area_mm2 += area / kGrooveLooks;
             f.least_mm2 = std::min(f.least_mm2, area);
             f.most_mm2 = std::max(f.most_mm2, area);
         }

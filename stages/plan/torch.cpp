@@ -1,9 +1,9 @@
 #include "stages/plan/torch.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/plan/text.hpp"
 
@@ -17,16 +17,14 @@ constexpr double kMinBisector = 0.05;
 // A seam must be longer than so many chord tolerances, or its shape is within the tolerance of a point.
 constexpr double kMinTolerances = 10;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
-
 }  // namespace
 
 TorchPath::TorchPath(const SeamModel& model, int seam, const PlanOptions& options)
     : model_(model),
       arc_(model.curve),
       seam_(seam),
-      tilt_(Eigen::AngleAxisd(options.work_angle_deg * kRadPerDeg, Eigen::Vector3d::UnitX()) *
-            Eigen::AngleAxisd(options.travel_angle_deg * kRadPerDeg, Eigen::Vector3d::UnitY())) {
+      tilt_(Eigen::AngleAxisd(options.work_angle_deg * kDegree, Eigen::Vector3d::UnitX()) *
+            Eigen::AngleAxisd(options.travel_angle_deg * kDegree, Eigen::Vector3d::UnitY())) {
     const double length = arc_.length();
     if (!(length > kMinTolerances * options.chord_tolerance_mm)) {
         throw InputError(seam_text(seam) + " is " + number(length) + " mm long; it must be longer than " +

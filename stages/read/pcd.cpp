@@ -16,8 +16,6 @@ namespace seampath {
 namespace pcd {
 namespace {
 
-constexpr std::string_view kExportAgain = "; export or copy the file again";
-
 void decode_ascii(const Source& source, const Header& header, bool raster, Cloud& cloud) {
     const Rows rows = find_rows(source, header.data);
     if (rows.count != header.points) {

@@ -12,7 +12,6 @@ namespace seampath::pcd {
 namespace {
 
 constexpr std::size_t kHeaderLimit = 64 * 1024;
-constexpr std::string_view kExportAgain = "; export or copy the file again";
 
 /// The counts as they stand in the header, which may leave some out.
 struct Counts {

@@ -14,8 +14,6 @@ namespace seampath {
 namespace ply {
 namespace {
 
-constexpr std::string_view kExportAgain = "; export or copy the file again";
-
 /// Slot 0..5 of a vertex property, or -1; normals only where all three are there.
 std::vector<int> slots_of(const Element& vertex) {
     std::vector<int> slots;

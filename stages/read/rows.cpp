@@ -7,7 +7,7 @@
 namespace seampath {
 namespace {
 
-constexpr std::size_t kBlockBytes = 1 << 18;
+constexpr std::size_t kRowBlockBytes = 1 << 18;
 constexpr std::size_t kSamples = 1024;
 
 /// Why a row could not be read; empty when it could.
@@ -94,7 +94,7 @@ Rows find_rows(const Source& source, std::size_t offset) {
     Rows rows;
     const std::string_view bytes = source.bytes;
     while (offset < bytes.size()) {
-        const std::size_t newline = bytes.find('\n', std::min(offset + kBlockBytes, bytes.size()) - 1);
+        const std::size_t newline = bytes.find('\n', std::min(offset + kRowBlockBytes, bytes.size()) - 1);
         const std::size_t end = newline == std::string_view::npos ? bytes.size() : newline + 1;
         rows.blocks.push_back({offset, end, 0});
         offset = end;

@@ -16,6 +16,9 @@ struct Source {
     std::string label;
 };
 
+/// How messages about a damaged file end.
+inline constexpr std::string_view kExportAgain = "; export or copy the file again";
+
 /// Throws InputError "read: <label>: <what>".
 [[noreturn]] void fail(const Source& source, std::string_view what);
 

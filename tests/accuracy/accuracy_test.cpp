@@ -5,7 +5,7 @@
 
 /// The limits of seams and models, on scans of smaller parts than the accuracy program's and of other seeds.
 namespace seampath {
-namespace {
+namespace accuracy_test {
 
 struct Case {
     SceneKind kind;
@@ -106,5 +106,5 @@ TEST(Missed, NamesEachLimit) {
     EXPECT_THAT(missed(accuracy, {}), testing::Contains(testing::StartsWith("extracted rms nan")));
 }
 
-}  // namespace
+}  // namespace accuracy_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace seampath {
-namespace {
+namespace common_error_test {
 
 using Eigen::Vector3d;
 
@@ -64,5 +64,5 @@ TEST(CommonError, CountsOnlyTheViewsThatSeeTheFlank) {
     }
 }
 
-}  // namespace
+}  // namespace common_error_test
 }  // namespace seampath

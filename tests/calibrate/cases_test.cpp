@@ -7,7 +7,7 @@
 
 /// A few seeds of each; build/seampath_fixture prints all.
 namespace seampath {
-namespace {
+namespace cases_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -59,5 +59,5 @@ TEST(MatchBalls, WhatIsMissingAndWhatIsMoreDoesNotMatter) {
     EXPECT_EQ(match[3], 1u);
 }
 
-}  // namespace
+}  // namespace cases_test
 }  // namespace seampath

@@ -9,7 +9,7 @@
 
 /// The program as a user calls it.
 namespace seampath {
-namespace {
+namespace fixture_cli_test {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
@@ -135,5 +135,5 @@ TEST_F(FixtureCli, CollinearPointsNameWhatIsOpen) {
     EXPECT_THAT(run.out, HasSubstr("the features do not hold: turn about (1.000, 0.000, 0.000)"));
 }
 
-}  // namespace
+}  // namespace fixture_cli_test
 }  // namespace seampath

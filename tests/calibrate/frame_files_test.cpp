@@ -9,7 +9,7 @@
 #include "stages/geometry/rigid.hpp"
 
 namespace seampath {
-namespace {
+namespace frame_files_test {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -78,5 +78,5 @@ TEST(FrameFiles, RandomFramesReadBackWithinTheRounding) {
     }
 }
 
-}  // namespace
+}  // namespace frame_files_test
 }  // namespace seampath

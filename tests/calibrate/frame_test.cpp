@@ -9,7 +9,7 @@
 #include "stages/geometry/pose.hpp"
 
 namespace seampath {
-namespace {
+namespace frame_test {
 
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
@@ -263,5 +263,5 @@ TEST(CalibrateInput, IsRefusedInOneLine) {
     EXPECT_THAT(message([&] { calibrate_planes(planes, {}, {}); }), HasSubstr("do not stand across"));
 }
 
-}  // namespace
+}  // namespace frame_test
 }  // namespace seampath

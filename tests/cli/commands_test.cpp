@@ -7,7 +7,7 @@
 #include "tests/cli/spawn.hpp"
 
 namespace seampath {
-namespace {
+namespace commands_test {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
@@ -199,5 +199,5 @@ TEST(Cli, VersionIsThatOfTheProject) {
                 HasSubstr("project(seampath VERSION " + number + " "));
 }
 
-}  // namespace
+}  // namespace commands_test
 }  // namespace seampath

@@ -8,7 +8,7 @@
 #include "tests/cli/spawn.hpp"
 
 namespace seampath {
-namespace {
+namespace faults_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -194,5 +194,5 @@ TEST(Faults, KilledAtAnyMomentARunFinishesFromItsLastGoodArtefact) {
     }
 }
 
-}  // namespace
+}  // namespace faults_test
 }  // namespace seampath

@@ -13,7 +13,7 @@
 #include "tests/datasets/scene_laws.hpp"
 
 namespace seampath {
-namespace {
+namespace dataset_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -277,5 +277,5 @@ TEST_F(Folder, UnwritablePlaceIsRefused) {
                 ThrowsMessage<InputError>(HasSubstr("cannot write")));
 }
 
-}  // namespace
+}  // namespace dataset_test
 }  // namespace seampath

@@ -9,7 +9,7 @@
 
 /// What the scenes of plates are, beyond the laws of every scene.
 namespace seampath {
-namespace {
+namespace plate_joints_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -250,5 +250,5 @@ TEST(PlateJoints, ImpossiblePartsAreRefused) {
     refused(o, "holes of radius 30 mm");
 }
 
-}  // namespace
+}  // namespace plate_joints_test
 }  // namespace seampath

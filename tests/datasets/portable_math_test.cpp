@@ -8,7 +8,7 @@
 #include "datasets/rng.hpp"
 
 namespace seampath {
-namespace {
+namespace portable_math_test {
 
 TEST(PortableMath, AgreesWithTheLibraryToTheLastDigits) {
     const Random random(7, 0);
@@ -64,5 +64,5 @@ TEST(Random, NormalsHaveTheMomentsOfTheNormalDistribution) {
     EXPECT_NEAR(lagged, 0, error);
 }
 
-}  // namespace
+}  // namespace portable_math_test
 }  // namespace seampath

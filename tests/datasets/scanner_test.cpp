@@ -11,7 +11,7 @@
 #include "tests/datasets/scene_laws.hpp"
 
 namespace seampath {
-namespace {
+namespace scanner_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -33,13 +33,13 @@ Scene block(double side) {
     Scene scene;
     const Vector3d high(side / 2, side / 2, 0);
     const Vector3d low(-side / 2, -side / 2, -5);
-    std::vector<Shape> faces;
+    std::vector<SceneShape> faces;
     for (int axis = 0; axis < 3; ++axis) {
-        faces.push_back(Plane{high, Vector3d::Unit(axis)});
-        faces.push_back(Plane{low, -Vector3d::Unit(axis)});
+        faces.push_back(PlaneShape{high, Vector3d::Unit(axis)});
+        faces.push_back(PlaneShape{low, -Vector3d::Unit(axis)});
     }
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        std::vector<Shape> others = faces;
+        std::vector<SceneShape> others = faces;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
         scene.surfaces.push_back({faces[i], others});
     }
@@ -452,5 +452,5 @@ TEST(Presets, AreKnownByNameAndWithinTheirBounds) {
                 ThrowsMessage<InputError>(HasSubstr("\"standart\"; the presets are standard, metrology")));
 }
 
-}  // namespace
+}  // namespace scanner_test
 }  // namespace seampath

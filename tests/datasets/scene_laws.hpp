@@ -17,7 +17,7 @@ inline double part_value(const Scene& scene, const Eigen::Vector3d& p) {
     double part = std::numeric_limits<double>::infinity();
     for (const Surface& surface : scene.surfaces) {
         double solid = signed_value(surface.shape, p);
-        for (const Shape& other : surface.inside_of) {
+        for (const SceneShape& other : surface.inside_of) {
             solid = std::max(solid, signed_value(other, p));
         }
         part = std::min(part, solid);

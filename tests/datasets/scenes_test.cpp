@@ -11,7 +11,7 @@
 #include "tests/datasets/scene_laws.hpp"
 
 namespace seampath {
-namespace {
+namespace scenes_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, all_scenes(), scene_test_name);
 bool lies_on_surface(const Scene& scene, const Vector3d& p, const Vector3d& n) {
     for (const Surface& surface : scene.surfaces) {
         bool inside = true;
-        for (const Shape& other : surface.inside_of) {
+        for (const SceneShape& other : surface.inside_of) {
             inside = inside && signed_value(other, p) < 1e-9;
         }
         if (inside && std::abs(signed_value(surface.shape, p)) < 1e-9 && (normal(surface.shape, p) - n).norm() < 1e-9) {
@@ -239,5 +239,5 @@ TEST(Scenes, ImpossiblePartsAreRefused) {
     EXPECT_THAT([&] { make_scene(resolved(pipes, 1)); }, ThrowsMessage<InputError>(HasSubstr("header length 60 mm")));
 }
 
-}  // namespace
+}  // namespace scenes_test
 }  // namespace seampath

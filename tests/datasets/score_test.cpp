@@ -9,7 +9,7 @@
 #include "tests/datasets/scene_laws.hpp"
 
 namespace seampath {
-namespace {
+namespace score_test {
 
 using testing::DoubleNear;
 using testing::Each;
@@ -184,5 +184,5 @@ TEST(Score, ModelIsComparedByItsCurve) {
     EXPECT_THAT(s.end_errors_mm, Each(DoubleNear(0, 1e-9)));
 }
 
-}  // namespace
+}  // namespace score_test
 }  // namespace seampath

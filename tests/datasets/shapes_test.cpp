@@ -8,23 +8,23 @@
 #include "datasets/rng.hpp"
 
 namespace seampath {
-namespace {
+namespace shapes_test {
 
 using Eigen::Vector3d;
 
 /// Where the ray meets the shape, or -1.
-double first(const Shape& shape, const Vector3d& from, const Vector3d& direction) {
+double first(const SceneShape& shape, const Vector3d& from, const Vector3d& direction) {
     const auto hit = first_hit({{shape, {}}}, {from, direction.normalized()});
     return hit ? hit->t : -1;
 }
 
 /// Apex at the origin, opening upwards by this half-angle.
-Cone upright(double angle, double side = 1) {
+ConeShape upright(double angle, double side = 1) {
     return {Vector3d::Zero(), Vector3d::UnitZ(), std::sin(angle), std::cos(angle), side};
 }
 
 TEST(Shapes, ConeIsHitWhereElementaryGeometrySays) {
-    const Cone cone = upright(M_PI / 4);
+    const ConeShape cone = upright(M_PI / 4);
     EXPECT_NEAR(first(cone, {10, 0, 2}, {-1, 0, 0}), 8, 1e-12);                  // outside
     EXPECT_NEAR(first(cone, {0, 0, 2}, {-1, 0, 0}), 2, 1e-12);                   // from within
     EXPECT_NEAR(first(cone, {3, 0, 10}, {0, 0, -1}), 7, 1e-12);                  // down on its side
@@ -39,8 +39,9 @@ TEST(Shapes, ValueIsTheDistanceAndNormalItsGradient) {
     const Random random(3, 1);
     const Vector3d axis = Vector3d(1, 2, 3).normalized();
     for (const double side : {1.0, -1.0}) {
-        for (const Shape& shape : {Shape(Cone{{5, -3, 2}, axis, std::sin(0.6), std::cos(0.6), side}),
-                                   Shape(Cylinder{{5, -3, 2}, axis, 7, side}), Shape(Sphere{{5, -3, 2}, 7})}) {
+        for (const SceneShape& shape :
+             {SceneShape(ConeShape{{5, -3, 2}, axis, std::sin(0.6), std::cos(0.6), side}),
+              SceneShape(CylinderShape{{5, -3, 2}, axis, 7, side}), SceneShape(SphereShape{{5, -3, 2}, 7})}) {
             for (std::uint64_t i = 0; i < 50; ++i) {
                 // Beside the axis and beyond a cone's apex.
                 const Vector3d beside = axis.unitOrthogonal();
@@ -64,8 +65,9 @@ TEST(Shapes, ValueIsTheDistanceAndNormalItsGradient) {
 TEST(Shapes, FarRaysHitExactly) {
     const Random random(4, 1);
     int hits = 0;
-    for (const Shape& shape : {Shape(upright(0.6)), Shape(upright(0.6, -1)), Shape(Sphere{{1, 2, 10}, 8}),
-                               Shape(Cylinder{{1, 2, 10}, Vector3d::UnitX(), 8, -1})}) {
+    for (const SceneShape& shape :
+         {SceneShape(upright(0.6)), SceneShape(upright(0.6, -1)), SceneShape(SphereShape{{1, 2, 10}, 8}),
+          SceneShape(CylinderShape{{1, 2, 10}, Vector3d::UnitX(), 8, -1})}) {
         for (std::uint64_t i = 0; i < 200; ++i) {
             const Vector3d target(random.uniform(6 * i, -8, 8), random.uniform(6 * i + 1, -8, 8),
                                   random.uniform(6 * i + 2, 1, 19));
@@ -86,5 +88,5 @@ TEST(Shapes, FarRaysHitExactly) {
     EXPECT_GT(hits, 500);
 }
 
-}  // namespace
+}  // namespace shapes_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 #include "tests/datasets/scene_laws.hpp"
 
 namespace seampath {
-namespace {
+namespace spatter_test {
 
 using Eigen::Vector3d;
 
@@ -22,10 +22,10 @@ Scene clean(SceneOptions o) {
     return make_scene(o);
 }
 
-std::vector<Sphere> spheres(const Scene& scene) {
-    std::vector<Sphere> found;
+std::vector<SphereShape> spheres(const Scene& scene) {
+    std::vector<SphereShape> found;
     for (const Surface& surface : scene.surfaces) {
-        if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+        if (const auto* sphere = std::get_if<SphereShape>(&surface.shape)) {
             found.push_back(*sphere);
         }
     }
@@ -56,9 +56,9 @@ TEST(Spatter, BallsAreAsManyAsAskedAndLieOnThePart) {
         o.tack_spacing_mm = 1e6;
         o = resolved(o, 5);
         const Scene bare = clean(o);
-        const std::vector<Sphere> balls = spheres(make_scene(o));
+        const std::vector<SphereShape> balls = spheres(make_scene(o));
         EXPECT_EQ(static_cast<double>(balls.size()), 4 * per_100mm);  // two seams of 200 mm
-        for (const Sphere& ball : balls) {
+        for (const SphereShape& ball : balls) {
             EXPECT_GE(2 * ball.radius, 0.3);
             EXPECT_LE(2 * ball.radius, 3);
             const double height = part_value(bare, ball.p);
@@ -80,7 +80,7 @@ TEST(Spatter, TacksSitOnTheSeamAndReachTheirLeg) {
         const Scene scene = make_scene(o);
         std::size_t bars = 0;
         for (const Surface& surface : scene.surfaces) {
-            const auto* bar = std::get_if<Cylinder>(&surface.shape);
+            const auto* bar = std::get_if<CylinderShape>(&surface.shape);
             if (!bar) {
                 continue;
             }
@@ -116,5 +116,5 @@ TEST(Spatter, ComesFromTheSeedAndIsRemadeFromTheOptions) {
     EXPECT_EQ(resolved(SceneOptions{}, 1).spatter_seed, 0);
 }
 
-}  // namespace
+}  // namespace spatter_test
 }  // namespace seampath

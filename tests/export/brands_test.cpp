@@ -16,7 +16,7 @@
 
 /// What all robot languages have in common, and what is each one's own.
 namespace seampath {
-namespace {
+namespace brands_test {
 
 using testing::AllOf;
 using testing::Contains;
@@ -308,5 +308,5 @@ TEST(Brands, TellTheUncertaintyOfTheFrame) {
     }
 }
 
-}  // namespace
+}  // namespace brands_test
 }  // namespace seampath

@@ -22,7 +22,7 @@
 
 /// What programs of others make of our files. Each test is skipped where its program is not installed.
 namespace seampath {
-namespace {
+namespace clients_test {
 
 namespace fs = std::filesystem;
 
@@ -191,5 +191,5 @@ TEST(Clients, FoxglovesOwnReaderReadsTheBag) {
               "messages 6 6\n");
 }
 
-}  // namespace
+}  // namespace clients_test
 }  // namespace seampath

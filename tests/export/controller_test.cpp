@@ -20,7 +20,7 @@
 
 /// Programs on LinuxCNC's whole controller, in simulation, driving an arm: what the arm does is what was planned.
 namespace seampath {
-namespace {
+namespace controller_test {
 
 namespace fs = std::filesystem;
 
@@ -195,5 +195,5 @@ TEST(Controller, ArmFollowsThePlanInPlaceAndTime) {
     }
 }
 
-}  // namespace
+}  // namespace controller_test
 }  // namespace seampath

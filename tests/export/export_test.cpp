@@ -23,7 +23,7 @@
 #include "tests/plan/models.hpp"
 
 namespace seampath {
-namespace {
+namespace export_test {
 
 using testing::AllOf;
 using testing::Contains;
@@ -485,5 +485,5 @@ TEST(Export, OptionsAreListedOnce) {
     EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
 }
 
-}  // namespace
+}  // namespace export_test
 }  // namespace seampath

@@ -12,7 +12,7 @@
 /// Programs of one small plan, byte for byte. After a change that is meant, run the tests once with
 /// SEAMPATH_UPDATE_GOLDEN=1 in the environment, and review the difference of tests/golden as you would review code.
 namespace seampath {
-namespace {
+namespace golden_test {
 
 namespace fs = std::filesystem;
 
@@ -82,5 +82,5 @@ TEST(Golden, ProgramsWithArcs) {
     expect_golden("arc", options, test::finished(waypoints));
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace seampath

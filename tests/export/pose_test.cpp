@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace seampath {
-namespace {
+namespace pose_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -59,5 +59,5 @@ TEST(Pose, DistanceToSegment) {
     EXPECT_EQ(distance_to_segment({0, 3, 4}, a, a), 5) << "no length";
 }
 
-}  // namespace
+}  // namespace pose_test
 }  // namespace seampath

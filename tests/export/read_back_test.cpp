@@ -11,7 +11,7 @@
 
 /// The proof must be able to fail: programs are damaged as a wrong writer would, and the reading back has to notice.
 namespace seampath {
-namespace {
+namespace read_back_test {
 
 using exporting::Format;
 using exporting::Program;
@@ -273,5 +273,5 @@ TEST(ReadBackRules, HoldTheLanguages) {
     }
 }
 
-}  // namespace
+}  // namespace read_back_test
 }  // namespace seampath

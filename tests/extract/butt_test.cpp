@@ -5,7 +5,7 @@
 
 /// Square butt joints: gaps between two plates' tops.
 namespace seampath {
-namespace {
+namespace butt_test {
 
 SceneOptions butt(double gap, double mismatch, Course course = Course::straight) {
     SceneOptions o = small_plates(SceneKind::butt, course);
@@ -94,5 +94,5 @@ TEST(ButtsNot, ArePlainPlatesWithStepsAndHoles) {
     }
 }
 
-}  // namespace
+}  // namespace butt_test
 }  // namespace seampath

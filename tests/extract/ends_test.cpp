@@ -4,7 +4,7 @@
 
 /// Where open seams end: where the first of the two flanks does.
 namespace seampath {
-namespace {
+namespace ends_test {
 
 using Eigen::Vector3d;
 
@@ -50,5 +50,5 @@ TEST(Ends, OfASlantedFlankAreWhereItMeetsTheSeam) {
     expect_ends(points, 0, 60);
 }
 
-}  // namespace
+}  // namespace ends_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace seampath::detail {
-namespace {
+namespace equal_steps_test {
 
 using Eigen::Vector2d;
 
@@ -42,5 +42,5 @@ TEST(EqualSteps, StayFiniteWithoutLength) {
     }
 }
 
-}  // namespace
+}  // namespace equal_steps_test
 }  // namespace seampath::detail

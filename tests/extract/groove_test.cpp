@@ -15,7 +15,7 @@
 #include "tests/extract/support.hpp"
 
 namespace seampath {
-namespace {
+namespace groove_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -195,5 +195,5 @@ TEST(GrooveCsv, HasANumberAndItsSigmaAtEveryPointAndAnEmptyCellWhereNotSeen) {
     EXPECT_TRUE(groove_csv({Seam{}}).empty());
 }
 
-}  // namespace
+}  // namespace groove_test
 }  // namespace seampath

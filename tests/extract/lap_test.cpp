@@ -6,7 +6,7 @@
 
 /// Lap joints: the foot of an upper plate's edge.
 namespace seampath {
-namespace {
+namespace lap_test {
 
 SceneOptions lap(double thickness, Course course = Course::straight) {
     SceneOptions o = small_plates(SceneKind::lap, course);
@@ -101,5 +101,5 @@ TEST(LapsAmong, SpatterAreFound) {
     EXPECT_LT(found.score.wrong_kind_share, 0.02);
 }
 
-}  // namespace
+}  // namespace lap_test
 }  // namespace seampath

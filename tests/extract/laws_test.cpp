@@ -9,7 +9,7 @@
 
 /// What must hold for extraction whatever the scan: its results follow the scan's motion, order and size.
 namespace seampath {
-namespace {
+namespace laws_test {
 
 using Eigen::Vector3d;
 
@@ -174,5 +174,5 @@ TEST(ExtractLaws, PipeAllRoundIsOneClosedSeam) {
     EXPECT_NEAR(model_of(seam).length_mm, 2 * 3.14159265 * 30, 0.1);
 }
 
-}  // namespace
+}  // namespace laws_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 
 /// Joints that meet: where three surfaces come together, seams end.
 namespace seampath {
-namespace {
+namespace meeting_test {
 
 using Eigen::Vector3d;
 
@@ -72,5 +72,5 @@ TEST(Meeting, AStiffenerAcrossAJointEndsItOnBothSides) {
     }
 }
 
-}  // namespace
+}  // namespace meeting_test
 }  // namespace seampath

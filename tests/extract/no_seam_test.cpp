@@ -7,7 +7,7 @@
 
 /// Scans without a joint, and scans that can't carry a measurement.
 namespace seampath {
-namespace {
+namespace no_seam_test {
 
 using Eigen::Vector3d;
 using testing::StartsWith;
@@ -55,10 +55,10 @@ std::vector<Eigen::Vector3f> scanned(const std::vector<Surface>& surfaces, const
 
 /// A box with its corners at `low` and `high`.
 std::vector<Surface> block(const Vector3d& low, const Vector3d& high) {
-    std::vector<Shape> sides;
+    std::vector<SceneShape> sides;
     for (int axis = 0; axis < 3; ++axis) {
-        sides.push_back(Plane{low, -Vector3d::Unit(axis)});
-        sides.push_back(Plane{high, Vector3d::Unit(axis)});
+        sides.push_back(PlaneShape{low, -Vector3d::Unit(axis)});
+        sides.push_back(PlaneShape{high, Vector3d::Unit(axis)});
     }
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -195,5 +195,5 @@ TEST(Degenerate, StrayPointsFarAwayHideNothing) {
     EXPECT_NEAR(length_of(extraction.seams[0]), 80, 2);
 }
 
-}  // namespace
+}  // namespace no_seam_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 
 /// Extraction of scans in another order, of several parts, and with a wild point.
 namespace seampath {
-namespace {
+namespace order_test {
 
 Scan shuffled(Scan scan) {
     const Random random(31, 0);
@@ -62,5 +62,5 @@ TEST(Degenerate, OnePointAtTheEndOfTheWorldHidesNothing) {
     EXPECT_NEAR(length_of(extraction.seams[0]), 80, 2);
 }
 
-}  // namespace
+}  // namespace order_test
 }  // namespace seampath

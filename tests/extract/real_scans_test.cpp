@@ -11,7 +11,7 @@
 /// Seams of real scans, against surfaces that a separate program fitted to hand-picked regions of the same scans by
 /// plain least squares: lines in which two planes meet, circles in which a round body meets the table.
 namespace seampath {
-namespace {
+namespace real_scans_test {
 
 using Eigen::Vector3d;
 
@@ -171,5 +171,5 @@ TEST(TeeAgainstItsDrawing, TubeWidthAndAngle) {
     }
 }
 
-}  // namespace
+}  // namespace real_scans_test
 }  // namespace seampath

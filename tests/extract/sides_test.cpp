@@ -1,17 +1,14 @@
 #include <gtest/gtest.h>
 
 #include "datasets/dataset.hpp"
+#include "tests/accuracy/measure.hpp"
 #include "tests/extract/support.hpp"
 
 /// Which side of a scan is the air, where the file does not say.
 namespace seampath {
-namespace {
+namespace sides_test {
 
 using Eigen::Vector3d;
-
-Scan scan_of(const Dataset& dataset) {
-    return scan_of_points({dataset.points.begin(), dataset.points.end()});
-}
 
 /// A face of `a` by `b` mm from a corner.
 void add_face(std::vector<Eigen::Vector3f>& points, const Vector3d& corner, const Vector3d& a, const Vector3d& b,
@@ -77,5 +74,5 @@ TEST(FloorAndWall, AreAPlateAndItsEdgeWhereTheWallIsLow) {
         << extraction.orientation_reason;
 }
 
-}  // namespace
+}  // namespace sides_test
 }  // namespace seampath

@@ -4,7 +4,7 @@
 
 /// A seam's sigma is a promise: errors keep it over many scans, whether noise makes them or the views' registration.
 namespace seampath {
-namespace {
+namespace sigma_test {
 
 using Eigen::Vector3d;
 
@@ -76,5 +76,5 @@ TEST(Sigma, OfOneViewIsThatOfItsNoise) {
     EXPECT_GT(c.two, 0.90);
 }
 
-}  // namespace
+}  // namespace sigma_test
 }  // namespace seampath

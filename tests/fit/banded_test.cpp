@@ -6,7 +6,7 @@
 #include "datasets/rng.hpp"
 
 namespace seampath {
-namespace {
+namespace banded_test {
 
 // The same sums of squares in a full matrix.
 TEST(BandedMatrix, SolvesAndInvertsAsAFullOneDoes) {
@@ -66,5 +66,5 @@ TEST(BandedMatrix, RefusesWhatIsNotPositiveDefinite) {
     EXPECT_FALSE(matrix.factorise());
 }
 
-}  // namespace
+}  // namespace banded_test
 }  // namespace seampath

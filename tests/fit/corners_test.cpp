@@ -3,7 +3,7 @@
 #include "tests/fit/models.hpp"
 
 namespace seampath {
-namespace {
+namespace corners_test {
 
 using Eigen::Vector3d;
 
@@ -87,5 +87,5 @@ TEST(Fit, HoldsAgainstSingleOutliersAtCornersToo) {
     }
 }
 
-}  // namespace
+}  // namespace corners_test
 }  // namespace seampath

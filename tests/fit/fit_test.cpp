@@ -8,7 +8,7 @@
 #include "tests/fit/models.hpp"
 
 namespace seampath {
-namespace {
+namespace fit_test {
 
 using Eigen::Vector3d;
 
@@ -22,7 +22,7 @@ Seam reversed(Seam seam) {
 
 TEST(Fit, RecoversKnownCurves) {
     // Exact points, whatever sigma they state: what is left is how far a cubic spline through them is from the curve.
-    EXPECT_LT(largest_error(model_of(seam_along(Circle{30}, 250, true)), Circle{30}), 1e-5);
+    EXPECT_LT(largest_error(model_of(seam_along(CircleCurve{30}, 250, true)), CircleCurve{30}), 1e-5);
     EXPECT_LT(largest_error(model_of(seam_along(Helix{25, 12, 1.5}, 400, false)), Helix{25, 12, 1.5}), 1e-5);
     EXPECT_LT(largest_error(model_of(seam_along(SineCurve{200, 18}, 300, false)), SineCurve{200, 18}), 3e-5);
     EXPECT_LT(largest_error(model_of(seam_along(Straight{{5, -3, 2}, {95, 10, 30}}, 90, false)),
@@ -34,15 +34,15 @@ TEST(Fit, TakesSixPoints) {
     const Straight line{{5, -3, 2}, {95, 10, 30}};
     EXPECT_LT(largest_error(model_of(seam_along(line, 6, false)), line), 1e-6);
     EXPECT_LT(largest_error(model_of(noisy(seam_along(line, 6, false), 0.03, 3)), line), 0.1);
-    EXPECT_LT(largest_error(model_of(seam_along(Circle{30}, 8, true)), Circle{30}), 0.05);
+    EXPECT_LT(largest_error(model_of(seam_along(CircleCurve{30}, 8, true)), CircleCurve{30}), 0.05);
 }
 
 TEST(Fit, DoesNotFloatWherePointsAreMissing) {
     constexpr double kSigma = 0.02;
     for (const std::uint64_t seed : {1, 2, 3}) {
-        Seam circle = noisy(seam_along(Circle{30}, 250, true), kSigma, seed);
+        Seam circle = noisy(seam_along(CircleCurve{30}, 250, true), kSigma, seed);
         circle.points.erase(circle.points.begin() + 60, circle.points.begin() + 75);  // 11 mm
-        EXPECT_LT(largest_error(model_of(circle), Circle{30}), 5 * kSigma) << "seed " << seed;
+        EXPECT_LT(largest_error(model_of(circle), CircleCurve{30}), 5 * kSigma) << "seed " << seed;
         const Straight line{{0, 0, 0}, {90, 0, 0}};
         Seam straight = noisy(seam_along(line, 91, false), kSigma, seed);
         straight.points.erase(straight.points.begin() + 30, straight.points.begin() + 60);
@@ -74,19 +74,19 @@ TEST(Fit, CountsTheFreedomItTakes) {
 TEST(Fit, KnowsTheLength) {
     const Helix helix{25, 12, 1.5};
     EXPECT_NEAR(model_of(seam_along(helix, 400, false)).length_mm, helix.length(), 0.01);
-    EXPECT_NEAR(model_of(seam_along(Circle{30}, 250, true)).length_mm, 2 * kPi * 30, 0.02);
+    EXPECT_NEAR(model_of(seam_along(CircleCurve{30}, 250, true)).length_mm, 2 * kPi * 30, 0.02);
     EXPECT_NEAR(model_of(seam_along(Straight{{0, 0, 0}, {30, 40, 0}}, 50, false)).length_mm, 50, 1e-6);
 }
 
 TEST(Fit, AveragesNoiseOut) {
     constexpr double kSigma = 0.05;
-    const SeamModel model = model_of(noisy(seam_along(Circle{30}, 300, true), kSigma, 3));
-    EXPECT_LT(largest_error(model, Circle{30}), 1.2 * kSigma);
+    const SeamModel model = model_of(noisy(seam_along(CircleCurve{30}, 300, true), kSigma, 3));
+    EXPECT_LT(largest_error(model, CircleCurve{30}), 1.2 * kSigma);
     EXPECT_NEAR(model.residual_rms_mm, kSigma, 0.15 * kSigma);
     double squares = 0;
     for (int i = 0; i < 300; ++i) {
         const Vector3d p = position(model.curve, first_parameter(model.curve) + i * 2 * kPi * 30 / 300);
-        squares += std::pow(distance_to(Circle{30}, p), 2);
+        squares += std::pow(distance_to(CircleCurve{30}, p), 2);
     }
     EXPECT_LT(std::sqrt(squares / 300), 0.45 * kSigma);
 }
@@ -114,7 +114,7 @@ TEST(Fit, FollowsABendSharpAgainstTheRest) {
 }
 
 TEST(Fit, ClosedCurveGoesOnSmoothlyWhereItCloses) {
-    const SeamModel model = model_of(noisy(seam_along(Circle{30}, 250, true), 0.02, 5));
+    const SeamModel model = model_of(noisy(seam_along(CircleCurve{30}, 250, true), 0.02, 5));
     ASSERT_TRUE(model.curve.periodic);
     const double first = first_parameter(model.curve), last = last_parameter(model.curve);
     constexpr double kNear = 1e-9;
@@ -125,7 +125,7 @@ TEST(Fit, ClosedCurveGoesOnSmoothlyWhereItCloses) {
 }
 
 TEST(Fit, ClosedCurveDoesNotHangOnWhereItStarts) {
-    Seam seam = noisy(seam_along(Circle{30}, 250, true), 0.01, 6);
+    Seam seam = noisy(seam_along(CircleCurve{30}, 250, true), 0.01, 6);
     const SeamModel one = model_of(seam);
     std::rotate(seam.points.begin(), seam.points.begin() + 77, seam.points.end());
     const SeamModel other = model_of(seam);
@@ -137,8 +137,8 @@ TEST(Fit, ClosedCurveDoesNotHangOnWhereItStarts) {
 
 TEST(Fit, OfAReversedSeamIsTheReversedCurve) {
     for (const bool closed : {false, true}) {
-        const Seam seam =
-            noisy(closed ? seam_along(Circle{30}, 250, true) : seam_along(SineCurve{200, 18}, 300, false), 0.01, 7);
+        const Seam seam = noisy(
+            closed ? seam_along(CircleCurve{30}, 250, true) : seam_along(SineCurve{200, 18}, 300, false), 0.01, 7);
         const SeamModel ahead = model_of(seam), back = model_of(reversed(seam));
         EXPECT_NEAR(ahead.length_mm, back.length_mm, 0.02);
         const ArcLength arc(ahead.curve);
@@ -176,7 +176,7 @@ TEST(Fit, MovesWithItsSeam) {
 
 TEST(Fit, StationsOfTheFlanksAreArcLengthsOfTheirPoints) {
     for (const bool closed : {false, true}) {
-        const Seam seam = seam_along(Circle{30}, 250, closed);
+        const Seam seam = seam_along(CircleCurve{30}, 250, closed);
         const SeamModel model = model_of(seam);
         const ArcLength arc(model.curve);
         EXPECT_NEAR(model.length_mm, arc.length(), 1e-9);
@@ -209,7 +209,7 @@ TEST(Fit, ResidualsAreTheDistancesOfThePoints) {
 }
 
 TEST(Fit, IsTheSameWhenRepeated) {
-    const Seam seam = noisy(seam_along(Circle{30}, 250, true), 0.02, 10);
+    const Seam seam = noisy(seam_along(CircleCurve{30}, 250, true), 0.02, 10);
     const SeamModel one = model_of(seam), two = model_of(seam);
     ASSERT_EQ(one.curve.control.size(), two.curve.control.size());
     EXPECT_TRUE(std::equal(one.curve.control.begin(), one.curve.control.end(), two.curve.control.begin()));
@@ -228,5 +228,5 @@ TEST(Fit, RefusesFewPointsAndNoLength) {
                 testing::ThrowsMessage<InputError>(testing::StartsWith("fit: the seam has no length")));
 }
 
-}  // namespace
+}  // namespace fit_test
 }  // namespace seampath

@@ -9,7 +9,7 @@
 #include "tests/fit/models.hpp"
 
 namespace seampath {
-namespace {
+namespace interpolated_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -191,16 +191,17 @@ TEST(Interpolated, StirlingDoesNotJumpOrKink) {
 // Over nodes at equal steps the error of a spline is |f''''| h^4 / 384 to the leading order (Hall & Meyer 1976).
 TEST(Interpolated, ErrorOnACircleIsTheOneKnown) {
     constexpr double kRadius = 30;
-    const Seam seam = seam_along(Circle{kRadius}, 2400, true);
+    const Seam seam = seam_along(CircleCurve{kRadius}, 2400, true);
     for (const std::size_t n : {16u, 24u}) {
         const double expected = kRadius * std::pow(2 * kPi / static_cast<double>(n), 4) / 384;
         for (const FitModel model : {periodic, parametric}) {
-            EXPECT_NEAR(largest_error(fit(seam, every(seam, 2400 / n), with(model)), Circle{kRadius}) / expected, 1,
-                        0.1)
+            EXPECT_NEAR(largest_error(fit(seam, every(seam, 2400 / n), with(model)), CircleCurve{kRadius}) / expected,
+                        1, 0.1)
                 << name(model) << ", " << n << " nodes";
         }
         const double sagitta = kRadius * (1 - std::cos(kPi / static_cast<double>(n)));
-        EXPECT_NEAR(largest_error(fit(seam, every(seam, 2400 / n), with(linear)), Circle{kRadius}) / sagitta, 1, 0.01);
+        EXPECT_NEAR(largest_error(fit(seam, every(seam, 2400 / n), with(linear)), CircleCurve{kRadius}) / sagitta, 1,
+                    0.01);
     }
 }
 
@@ -208,7 +209,7 @@ TEST(Interpolated, ClosedSeamsHaveNoBeginning) {
     for (const FitModel model : kClosed) {
         // Equal steps from another point are the same places on a circle only.
         const Seam seam =
-            sets_nodes(model) ? seam_along(Circle{30}, 240, true) : seam_along(Ellipse{40, 25}, 240, true);
+            sets_nodes(model) ? seam_along(CircleCurve{30}, 240, true) : seam_along(Ellipse{40, 25}, 240, true);
         Seam turned = seam;
         std::rotate(turned.points.begin(), turned.points.begin() + 96, turned.points.end());
         const SeamModel a = fit(seam, every(seam, 24), with(model)), b = fit(turned, every(seam, 24), with(model));
@@ -244,7 +245,7 @@ TEST(Interpolated, ParametersAreMarins) {
 
 // By symmetry all steps of a regular ring are equal, whatever is made least.
 TEST(Interpolated, ParametersOfARingKnowNoEnds) {
-    const Seam seam = seam_along(Circle{30}, 240, true);
+    const Seam seam = seam_along(CircleCurve{30}, 240, true);
     for (const Objective objective :
          {Objective::centripetal, Objective::foley, Objective::exact, Objective::diagonal}) {
         FitOptions options = with(parametric);
@@ -332,5 +333,5 @@ TEST(Interpolated, FewNodesDo) {
     }
 }
 
-}  // namespace
+}  // namespace interpolated_test
 }  // namespace seampath

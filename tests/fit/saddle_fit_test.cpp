@@ -8,7 +8,7 @@
 
 /// Saddles from noisy points of a branch and of a header.
 namespace seampath {
-namespace {
+namespace saddle_fit_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -292,5 +292,5 @@ TEST(SaddleSeam, IsTheCurveOrAStretchOfIt) {
     }
 }
 
-}  // namespace
+}  // namespace saddle_fit_test
 }  // namespace seampath

@@ -14,7 +14,7 @@
 
 /// From scans of pipes to the model that `fit.model: auto` takes, and why.
 namespace seampath {
-namespace {
+namespace saddle_model_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -310,5 +310,5 @@ TEST(ChiSquared, HoldsForNoiseOfTheStatedSigmaAndCountsWhatIsIndependent) {
     }
 }
 
-}  // namespace
+}  // namespace saddle_model_test
 }  // namespace seampath

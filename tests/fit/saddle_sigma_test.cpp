@@ -8,7 +8,7 @@
 
 /// A saddle's parameters, from scan to model, keep their sigmas where every view is shifted by an error of its own.
 namespace seampath {
-namespace {
+namespace saddle_sigma_test {
 
 struct Tally {
     int one = 0, two = 0, all = 0;
@@ -50,5 +50,5 @@ TEST(SaddleSigma, HoldsForEveryParameterOverManyScans) {
     EXPECT_LT(tally.two, 0.98 * tally.all);
 }
 
-}  // namespace
+}  // namespace saddle_sigma_test
 }  // namespace seampath

@@ -13,7 +13,7 @@
 #include "tests/geometry/arms.hpp"
 
 namespace seampath {
-namespace {
+namespace arm_test {
 
 using Eigen::Vector3d;
 using test::degrees;
@@ -339,5 +339,5 @@ TEST(Urdf, TakesCommentsContinuousJointsAndOtherTips) {
     EXPECT_EQ(arm_from_urdf(text, "a.urdf").base_from_flange.matrix(), arm.base_from_flange.matrix());
 }
 
-}  // namespace
+}  // namespace arm_test
 }  // namespace seampath

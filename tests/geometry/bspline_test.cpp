@@ -6,7 +6,7 @@
 #include "tests/geometry/curves.hpp"
 
 namespace seampath {
-namespace {
+namespace bspline_test {
 
 using Eigen::Vector3d;
 
@@ -168,5 +168,5 @@ TEST(Flanks, StayBeyondOpenEndsAndWrapRoundClosedSeams) {
     EXPECT_NEAR(flanks_at(three_flanks(true), 195).sigma_mm, 0.0175, 1e-15);
 }
 
-}  // namespace
+}  // namespace bspline_test
 }  // namespace seampath

@@ -62,7 +62,7 @@ Seam seam_along(const Curve& curve, int points, bool closed, double sigma = 0.01
     return seam;
 }
 
-struct Circle {
+struct CircleCurve {
     double radius;
     Eigen::Vector3d operator()(double x) const {
         return {radius * std::cos(2 * kPi * x), radius * std::sin(2 * kPi * x), 0};

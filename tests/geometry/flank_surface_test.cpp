@@ -6,7 +6,7 @@
 #include "tests/geometry/patches.hpp"
 
 namespace seampath {
-namespace {
+namespace flank_surface_test {
 
 using Eigen::Vector3d;
 
@@ -49,5 +49,5 @@ TEST(FlankSurface, RefusesACovarianceOfAnotherSize) {
     EXPECT_THROW(surface_fit(plain, Vector3d::Zero()), InputError);
 }
 
-}  // namespace
+}  // namespace flank_surface_test
 }  // namespace seampath

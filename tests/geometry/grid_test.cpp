@@ -9,7 +9,7 @@
 #include "datasets/rng.hpp"
 
 namespace seampath {
-namespace {
+namespace grid_test {
 
 std::vector<Eigen::Vector3f> random_points(std::size_t count, double extent) {
     const Random random(5, 0);
@@ -143,5 +143,5 @@ TEST(PointGrid, OfNoPointsFindsNothing) {
     EXPECT_TRUE(in_ball(grid, {0, 0, 0}, 10).empty());
 }
 
-}  // namespace
+}  // namespace grid_test
 }  // namespace seampath

@@ -14,7 +14,7 @@
 /// the normal equations from the truth. The limits are those of the software tests of ISO 10360-6 in their best class:
 /// 0.1 um and 0.1 urad.
 namespace seampath {
-namespace {
+namespace least_squares_test {
 
 using Eigen::Vector3d;
 using Real = long double;
@@ -188,5 +188,5 @@ TEST(LeastSquaresInput, TooFewOrInLineIsRefused) {
     EXPECT_THROW(associated_cylinder(line, {1, 0, 0}, "A"), InputError);
 }
 
-}  // namespace
+}  // namespace least_squares_test
 }  // namespace seampath

@@ -10,7 +10,7 @@
 #include "stages/geometry/pose.hpp"
 
 namespace seampath {
-namespace {
+namespace path_moves_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -202,5 +202,5 @@ TEST(FewestMoves, AreAsFewAsTrialFinds) {
     EXPECT_LE(more, 3);
 }
 
-}  // namespace
+}  // namespace path_moves_test
 }  // namespace seampath

@@ -6,7 +6,7 @@
 #include "tests/geometry/curves.hpp"
 
 namespace seampath {
-namespace {
+namespace pieces_test {
 
 /// Taylor's cubics of a spline between its knots; a knot's multiplicity says what its pieces share.
 CubicPieces pieces_of(const CubicBSpline& curve) {
@@ -72,5 +72,5 @@ TEST(Pieces, OneCubicIsABezierCurve) {
     }
 }
 
-}  // namespace
+}  // namespace pieces_test
 }  // namespace seampath

@@ -10,7 +10,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace piecewise_cubic_test {
 
 using Values = std::vector<double>;
 using Builder = std::function<PiecewiseCubic(const Values&, const Values&)>;
@@ -135,5 +135,5 @@ TEST(PiecewiseCubic, AkimaKeepsStraightRunsStraight) {
     EXPECT_DOUBLE_EQ(s.value(5.5), 3);
 }
 
-}  // namespace
+}  // namespace piecewise_cubic_test
 }  // namespace seampath

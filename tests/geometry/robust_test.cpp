@@ -6,7 +6,7 @@
 #include "datasets/rng.hpp"
 
 namespace seampath {
-namespace {
+namespace robust_test {
 
 using Coefficients = QuadraticFit::Coefficients;
 
@@ -175,5 +175,5 @@ TEST(Quantile, OfManyValuesIsTheOneThatSortingFinds) {
     }
 }
 
-}  // namespace
+}  // namespace robust_test
 }  // namespace seampath

@@ -6,7 +6,7 @@
 #include "tests/geometry/curves.hpp"
 
 namespace seampath {
-namespace {
+namespace sampled_spline_test {
 
 using Eigen::Vector3d;
 
@@ -41,5 +41,5 @@ TEST(SampledSpline, FollowsACubicExactlyWithoutFurtherKnots) {
     EXPECT_EQ(sampled.curve.control.size(), 64u + 3);
 }
 
-}  // namespace
+}  // namespace sampled_spline_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 #include "tests/geometry/clouds.hpp"
 
 namespace seampath {
-namespace {
+namespace scale_test {
 
 std::vector<Eigen::Vector3f> plane(double pitch, double sigma) {
     std::vector<Eigen::Vector3f> points;
@@ -125,5 +125,5 @@ TEST(ScaleField, SaysWhereTheScanIsCoarserAndNoisier) {
     EXPECT_LT(near, 360);
 }
 
-}  // namespace
+}  // namespace scale_test
 }  // namespace seampath

@@ -5,7 +5,7 @@
 #include "tests/geometry/clouds.hpp"
 
 namespace seampath {
-namespace {
+namespace section_test {
 
 using Eigen::Vector3d;
 
@@ -151,5 +151,5 @@ TEST(Section, ParallelFlanksDoNotMeet) {
     EXPECT_FALSE(fit_section(grid, {0.3, 0.01, 1}, {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}}, {8, 10, 1.2}));
 }
 
-}  // namespace
+}  // namespace section_test
 }  // namespace seampath

@@ -6,7 +6,7 @@
 #include "stages/geometry/tridiagonal.hpp"
 
 namespace seampath {
-namespace {
+namespace solvers_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -98,5 +98,5 @@ TEST(Lbfgs, StaysAtAMinimumAndOutOfWhereTheFunctionEnds) {
     EXPECT_NEAR(minimise(barrier, VectorXd::Constant(1, 0.01), 1e-14, 100).x[0], 1, 1e-6);
 }
 
-}  // namespace
+}  // namespace solvers_test
 }  // namespace seampath

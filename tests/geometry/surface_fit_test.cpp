@@ -9,7 +9,7 @@
 
 /// Planes, cylinders, cones and spheres fitted to points of known surfaces.
 namespace seampath {
-namespace {
+namespace surface_fit_test {
 
 using Eigen::Vector3d;
 
@@ -325,5 +325,5 @@ TEST(SurfaceFit, NeedsBlocksToKnowOfSharedNoise) {
     EXPECT_GT(fit->sigma(made.places[0]), 2 * blind->sigma(made.places[0]));
 }
 
-}  // namespace
+}  // namespace surface_fit_test
 }  // namespace seampath

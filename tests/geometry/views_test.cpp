@@ -7,7 +7,7 @@
 
 /// Views told from the order of the points.
 namespace seampath {
-namespace {
+namespace views_test {
 
 using Eigen::Vector3d;
 using testing::ElementsAre;
@@ -43,5 +43,5 @@ TEST(Views, OneViewIsOne) {
     EXPECT_THAT(view_starts(std::vector<Eigen::Vector3f>(5000, Eigen::Vector3f::Zero())).front(), 0u);
 }
 
-}  // namespace
+}  // namespace views_test
 }  // namespace seampath

@@ -11,7 +11,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace differences_test {
 
 using testing::HasSubstr;
 using Values = std::vector<double>;
@@ -217,5 +217,5 @@ TEST(Polynomial, NodesOfAllDistancesAreServed) {
     }
 }
 
-}  // namespace
+}  // namespace differences_test
 }  // namespace seampath

@@ -8,7 +8,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace interpolate_cli_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -145,5 +145,5 @@ TEST(InterpolateCli, SaysWhatIsWrongAndWhere) {
     }
 }
 
-}  // namespace
+}  // namespace interpolate_cli_test
 }  // namespace seampath

@@ -9,7 +9,7 @@
 #include "tools/interpolation_seams.hpp"
 
 namespace seampath {
-namespace {
+namespace interpolate_run_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -80,7 +80,7 @@ TEST(InterpolateRun, SaysWhatIsWrong) {
 }
 
 TEST(InterpolateRun, NodesAreAsMany) {
-    const Seam wave = seam_along(SineCurve{120, 10}, 160, false), ring = seam_along(Circle{20}, 120, true);
+    const Seam wave = seam_along(SineCurve{120, 10}, 160, false), ring = seam_along(CircleCurve{20}, 120, true);
     for (const Seam& seam : {wave, ring}) {
         for (const std::size_t count : {6u, 11u, 24u}) {
             const Nodes equal = equal_nodes(seam, count), curvature = curvature_nodes(seam, count);
@@ -124,5 +124,5 @@ TEST(InterpolateRun, PlacesAreThoseOfTheValidation) {
     EXPECT_EQ(comparison.best.rms_mm, std::min(comparison.equal.best.rms_mm, comparison.curvature.best.rms_mm));
 }
 
-}  // namespace
+}  // namespace interpolate_run_test
 }  // namespace seampath

@@ -10,7 +10,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace interpolate_test {
 
 using Eigen::Vector2d;
 using testing::HasSubstr;
@@ -269,5 +269,5 @@ TEST(Interpolate, SaysWhatIsWrongWithTheTable) {
     EXPECT_THAT(message(Method::lagrange, {1, 2}, {1, 1}, of_degree(0)), HasSubstr("degree 0; 1 to 40"));
 }
 
-}  // namespace
+}  // namespace interpolate_test
 }  // namespace seampath

@@ -28,19 +28,19 @@ std::string polynomial_table() {
                            {"error at x = 1, mm", "2.44", fixed(10 * (2.95 - p1), 3), "2.435546875"}});
 }
 
-struct Seam {
+struct PaperSeam {
     std::vector<double> x = paper_column("minejeva_table_4.csv", 0);
     std::vector<double> y = paper_column("minejeva_table_4.csv", 1);
     std::vector<Eigen::Vector2d> checks;
 
-    Seam() {
+    PaperSeam() {
         for (const auto& point : paper_points("minejeva_check_points.csv")) {
             checks.emplace_back(point);
         }
     }
 };
 
-std::string statistics_table(const Seam& seam) {
+std::string statistics_table(const PaperSeam& seam) {
     const CheckStatistics s = check_points(interpolate(Method::natural, seam.x, seam.y, {}), seam.checks);
     const double sample_variance = s.sample_variance.value_or(0);
     return markdown_table(
@@ -53,7 +53,7 @@ std::string statistics_table(const Seam& seam) {
          {"largest difference", "", fixed(s.max, 4) + " at x = " + fixed(s.max_x, 1)}});
 }
 
-std::string ranking_table(const Seam& seam) {
+std::string ranking_table(const PaperSeam& seam) {
     struct Row {
         std::string label;
         Method method;
@@ -88,7 +88,7 @@ std::string ranking_table(const Seam& seam) {
 }  // namespace
 
 std::string interpolation_section() {
-    const Seam seam;
+    const PaperSeam seam;
     const Shape natural = shape_of(interpolate(Method::natural, seam.x, seam.y, {}), seam.x, seam.y);
     const Reversal& back = natural.reversals.at(0);
     return "## Interpolation of a tabulated seam\n\n"

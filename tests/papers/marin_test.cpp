@@ -6,7 +6,7 @@
 #include "tests/papers/parametrized.hpp"
 
 namespace seampath {
-namespace {
+namespace marin_test {
 
 using Eigen::VectorXd;
 
@@ -97,5 +97,5 @@ TEST(Marin, InOneDimensionLeastPeakAndLeastEnergyAgree) {
     EXPECT_NEAR(solved(points, Objective::minimax).peak / solved(points, Objective::exact).peak, 1, 1e-5);
 }
 
-}  // namespace
+}  // namespace marin_test
 }  // namespace seampath

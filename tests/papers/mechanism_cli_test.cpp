@@ -8,7 +8,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace mechanism_cli_test {
 
 using nlohmann::json;
 using testing::AllOf;
@@ -113,5 +113,5 @@ TEST(MechanismCli, SaysWhatIsWrong) {
     }
 }
 
-}  // namespace
+}  // namespace mechanism_cli_test
 }  // namespace seampath

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <numbers>
 
+#include "stages/angle.hpp"
 #include "stages/mechanism/mechanism.hpp"
 #include "stages/text.hpp"
 #include "tests/papers/sections.hpp"
@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kDegree = std::numbers::pi / 180, kRadius = 500;
+constexpr double kDiscRadius = 500;
 
 const std::vector<Vector2d>& paper_line() {
     static const std::vector<Vector2d> line{{-350, -100}, {160, 280}};
@@ -19,21 +19,21 @@ const std::vector<Vector2d>& paper_line() {
 }
 
 GridPath on_grid(double alpha_deg, const std::vector<Vector2d>& line, GridMethod method) {
-    return follow(two_tier_grid(kRadius, alpha_deg * kDegree, alpha_deg / 2 * kDegree), line, method);
+    return follow(two_tier_grid(kDiscRadius, alpha_deg * kDegree, alpha_deg / 2 * kDegree), line, method);
 }
 
 /// Where the inverse kinematics as printed, eq. (1), would put the tool.
 Vector2d printed_inverse(const Vector2d& p) {
-    const double beta = std::acos((-p.squaredNorm() + 2 * kRadius * kRadius) / (2 * kRadius * kRadius));
+    const double beta = std::acos((-p.squaredNorm() + 2 * kDiscRadius * kDiscRadius) / (2 * kDiscRadius * kDiscRadius));
     const double alpha =
-        std::asin((p.x() * std::cos(beta) - p.x() - std::sin(beta) * p.y()) / (2 * kRadius * (std::cos(beta) + 1)));
-    return tool_position(kRadius, {alpha, beta});
+        std::asin((p.x() * std::cos(beta) - p.x() - std::sin(beta) * p.y()) / (2 * kDiscRadius * (std::cos(beta) + 1)));
+    return tool_position(kDiscRadius, {alpha, beta});
 }
 
 std::string kinematics() {
     Rows rows{{"point, mm", "tool off by, with (1) as printed", "with its right form"}};
     for (const Vector2d& p : paper_line()) {
-        const double here = (tool_position(kRadius, two_tier_angles(kRadius, p)) - p).norm();
+        const double here = (tool_position(kDiscRadius, two_tier_angles(kDiscRadius, p)) - p).norm();
         rows.push_back({"(" + shortest(p.x()) + ", " + shortest(p.y()) + ")",
                         fixed((printed_inverse(p) - p).norm(), 1) + " mm",
                         (here < 1e-11 ? "below 1e-11" : fixed(here, 12)) + " mm"});

@@ -17,7 +17,7 @@
 
 /// Naumov et al., its figures and what holds for the mechanism in general.
 namespace seampath {
-namespace {
+namespace mechanism_test {
 
 using Eigen::Vector2d;
 using testing::HasSubstr;
@@ -325,5 +325,5 @@ TEST(Mechanism, RefusesWhatItCannotReachOrStep) {
               "accepted");
 }
 
-}  // namespace
+}  // namespace mechanism_test
 }  // namespace seampath

@@ -9,7 +9,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace parametrize_cli_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -126,5 +126,5 @@ TEST(ParametrizeCli, SaysWhatIsWrongWithTheOptions) {
     }
 }
 
-}  // namespace
+}  // namespace parametrize_cli_test
 }  // namespace seampath

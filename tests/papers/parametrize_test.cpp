@@ -13,7 +13,7 @@
 #include "tests/papers/parametrized.hpp"
 
 namespace seampath {
-namespace {
+namespace parametrize_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -236,5 +236,5 @@ TEST(Parametrize, SaysWhatIsWrongWithTheInput) {
     EXPECT_THAT(message(good, options), HasSubstr("limits: -2 is not above 0"));
 }
 
-}  // namespace
+}  // namespace parametrize_test
 }  // namespace seampath

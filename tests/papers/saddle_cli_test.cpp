@@ -10,7 +10,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace saddle_cli_test {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -265,5 +265,5 @@ TEST(SaddleCli, SaysWhatCannotBeAndLeavesNothing) {
     }
 }
 
-}  // namespace
+}  // namespace saddle_cli_test
 }  // namespace seampath

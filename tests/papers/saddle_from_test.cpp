@@ -13,7 +13,7 @@
 #include "tests/papers/tables.hpp"
 
 namespace seampath {
-namespace {
+namespace saddle_from_test {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -188,5 +188,5 @@ TEST(SaddleFrom, SaysWhatIsWrong) {
     EXPECT_THAT(alone.err, HasSubstr("--seam: is for the run that --from names"));
 }
 
-}  // namespace
+}  // namespace saddle_from_test
 }  // namespace seampath

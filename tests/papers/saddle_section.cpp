@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stages/angle.hpp"
 #include "stages/nominal/nominal.hpp"
 #include "stages/plan/plan.hpp"
 #include "stages/text.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180;
+constexpr double kPi = std::numbers::pi;
 
 std::string range_text(double low, double high, int decimals) {
     return fixed(low, decimals) + " to " + fixed(high, decimals);

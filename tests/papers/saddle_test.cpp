@@ -17,7 +17,7 @@
 
 /// Xue et al. 2018, its figures and what holds for saddles in general position.
 namespace seampath {
-namespace {
+namespace saddle_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -293,5 +293,5 @@ TEST(Nominal, PlannedTorchStandsAsTheLawSays) {
     }
 }
 
-}  // namespace
+}  // namespace saddle_test
 }  // namespace seampath

@@ -9,7 +9,7 @@
 #include "pipeline/digest.hpp"
 
 namespace seampath {
-namespace {
+namespace artefact_test {
 
 /// Doubles of any sign and size, infinities and NaN among them.
 class Numbers {
@@ -207,5 +207,5 @@ TEST(Artefact, KeyFollowsFromStageOptionsAndInputs) {
     EXPECT_NE(key("fit", "{}", {"a"}), base);
 }
 
-}  // namespace
+}  // namespace artefact_test
 }  // namespace seampath

@@ -7,7 +7,7 @@
 #include "stages/error.hpp"
 
 namespace seampath {
-namespace {
+namespace config_test {
 
 using testing::HasSubstr;
 
@@ -182,5 +182,5 @@ TEST(Config, FileMustBeThereRegularAndOfReasonableSize) {
     EXPECT_THROW(read_config("/dev/zero"), InputError);
 }
 
-}  // namespace
+}  // namespace config_test
 }  // namespace seampath

@@ -13,7 +13,7 @@
 #include "tests/pipeline/run_support.hpp"
 
 namespace seampath {
-namespace {
+namespace run_test {
 
 namespace fs = std::filesystem;
 using Stages = std::vector<std::string>;
@@ -193,5 +193,5 @@ TEST(RunFolder, RemovesTemporaryFilesOfAKilledRunAndNothingElse) {
     EXPECT_TRUE(fs::exists(out.path() / "notes.tmp."));
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace seampath

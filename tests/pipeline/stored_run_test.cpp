@@ -8,7 +8,7 @@
 #include "tests/pipeline/run_support.hpp"
 
 namespace seampath {
-namespace {
+namespace stored_run_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -59,5 +59,5 @@ TEST(StoredRun, FindsAScanThatMovedWithIt) {
     EXPECT_FALSE(load_run(folder.path() / "b" / "out", {}).seams.empty());
 }
 
-}  // namespace
+}  // namespace stored_run_test
 }  // namespace seampath

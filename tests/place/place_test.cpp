@@ -8,7 +8,7 @@
 #include "tests/geometry/curves.hpp"
 
 namespace seampath {
-namespace {
+namespace place_test {
 
 using Eigen::Vector3d;
 
@@ -89,7 +89,8 @@ std::size_t fewest_by_force(const Seam& seam, const PlaceOptions& options) {
 TEST(Place, HoldsTheToleranceUnderEveryChord) {
     const PlaceOptions options{kTolerance, 25};
     for (const bool closed : {false, true}) {
-        check_nodes(seam_along(Circle{30}, 300, closed), place(seam_along(Circle{30}, 300, closed), options), options);
+        check_nodes(seam_along(CircleCurve{30}, 300, closed), place(seam_along(CircleCurve{30}, 300, closed), options),
+                    options);
     }
     const Seam helix = seam_along(Helix{20, 15, 2.5}, 500, false), wave = seam_along(SineCurve{200, 18}, 400, false);
     check_nodes(helix, place(helix, options), options);
@@ -111,7 +112,7 @@ TEST(Place, StraightSeamTakesItsEndsAndTheSpacingOnly) {
 TEST(Place, TakesAsFewNodesAsAnyChoice) {
     const Random random(21, 0);
     for (std::uint64_t trial = 0; trial < 24; ++trial) {
-        Seam seam = seam_along(Circle{random.uniform(1000 * trial, 5, 15)}, 13, trial % 2 == 0);
+        Seam seam = seam_along(CircleCurve{random.uniform(1000 * trial, 5, 15)}, 13, trial % 2 == 0);
         for (std::size_t i = 0; i < seam.points.size(); ++i) {
             seam.points[i].p.z() += random.uniform(1000 * trial + i + 1, -0.6, 0.6);
         }
@@ -145,7 +146,7 @@ TEST(Place, PutsMoreNodesWhereItBends) {
 
 TEST(Place, OfAReversedSeamTakesAsMany) {
     for (const bool closed : {false, true}) {
-        Seam seam = seam_along(Circle{30}, 200, closed);
+        Seam seam = seam_along(CircleCurve{30}, 200, closed);
         const Nodes nodes = place(seam, {kTolerance, 25});
         std::reverse(seam.points.begin(), seam.points.end());
         EXPECT_EQ(place(seam, {kTolerance, 25}).index.size(), nodes.index.size());
@@ -160,5 +161,5 @@ TEST(Place, RefusesThreePoints) {
         testing::ThrowsMessage<InputError>(testing::StartsWith("place: the seam has 3 points")));
 }
 
-}  // namespace
+}  // namespace place_test
 }  // namespace seampath

@@ -12,7 +12,7 @@
 #include "tests/plan/models.hpp"
 
 namespace seampath {
-namespace {
+namespace arm_test {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -297,5 +297,5 @@ TEST(JointMove, IsTheShortestWithinItsLimits) {
     }
 }
 
-}  // namespace
+}  // namespace arm_test
 }  // namespace seampath

@@ -12,7 +12,7 @@
 #include "tests/plan/models.hpp"
 
 namespace seampath {
-namespace {
+namespace passes_test {
 
 using Eigen::Vector3d;
 using planning::Pass;
@@ -228,5 +228,5 @@ TEST(Passes, SayWhatCannotBeFilled) {
     EXPECT_EQ(two[1].facts.layer, 1) << "on a root without width a bead lies alone";
 }
 
-}  // namespace
+}  // namespace passes_test
 }  // namespace seampath

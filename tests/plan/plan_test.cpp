@@ -13,7 +13,7 @@
 #include "tests/plan/models.hpp"
 
 namespace seampath {
-namespace {
+namespace plan_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -420,5 +420,5 @@ TEST(Plan, OptionsHaveBoundsAndMeanings) {
     EXPECT_THAT(plan_problems(options), testing::ElementsAre(HasSubstr("flange_from_tool: the quaternion")));
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace seampath

@@ -7,7 +7,7 @@
 #include "tests/read/support.hpp"
 
 namespace seampath::read_test {
-namespace {
+namespace file_test {
 
 namespace fs = std::filesystem;
 using ::testing::EndsWith;
@@ -196,5 +196,5 @@ TEST(ReadOptionsFields, AreDescribedOnce) {
     EXPECT_TRUE(fields[1].bounds.low == 0 && fields[1].bounds.low_open);
 }
 
-}  // namespace
+}  // namespace file_test
 }  // namespace seampath::read_test

@@ -10,7 +10,7 @@
 /// Whatever the bytes, a reader gives a whole scan or an InputError, within a second. The files in tests/corpus are the
 /// seeds of the fuzzers, and what these found.
 namespace seampath::read_test {
-namespace {
+namespace hostile_test {
 
 namespace fs = std::filesystem;
 
@@ -135,5 +135,5 @@ TEST(ReadHostile, ThousandsOfSmallDamages) {
     }
 }
 
-}  // namespace
+}  // namespace hostile_test
 }  // namespace seampath::read_test

@@ -5,7 +5,7 @@
 #include "tests/read/support.hpp"
 
 namespace seampath::read_test {
-namespace {
+namespace mesh_test {
 
 using ::testing::HasSubstr;
 
@@ -195,5 +195,5 @@ TEST(ReadMesh, TooManyPointsOrNoneAreRefused) {
     EXPECT_THAT(error_of(binary_stl({point}), kStl), HasSubstr("1 faces have too little area"));
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace seampath::read_test

@@ -3,7 +3,7 @@
 #include "tests/read/support.hpp"
 
 namespace seampath::read_test {
-namespace {
+namespace pcd_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -195,5 +195,5 @@ TEST(ReadPcd, ErrorsInCompressedData) {
                 HasSubstr("does not unpack to the 3600000000 bytes promised"));
 }
 
-}  // namespace
+}  // namespace pcd_test
 }  // namespace seampath::read_test

@@ -1,7 +1,7 @@
 #include "tests/read/support.hpp"
 
 namespace seampath::read_test {
-namespace {
+namespace ply_test {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -234,5 +234,5 @@ TEST(ReadPly, ManyPointsKeepTheirOrderAcrossBlocks) {
     EXPECT_EQ(from_text.points, scan.points);
 }
 
-}  // namespace
+}  // namespace ply_test
 }  // namespace seampath::read_test

@@ -4,7 +4,7 @@
 #include "tests/read/support.hpp"
 
 namespace seampath::read_test {
-namespace {
+namespace real_scans_test {
 
 namespace fs = std::filesystem;
 
@@ -74,5 +74,5 @@ INSTANTIATE_TEST_SUITE_P(
                       RealScan{"tee_lidar/table_8in10in_tee_x4y24_45.pcd", kAscii, 77393, 0, 0, 0, 788.585},
                       RealScan{"tube/coil_scan00.ply", kLittle, 99519, 0, 0, 0, 227.504}));
 
-}  // namespace
+}  // namespace real_scans_test
 }  // namespace seampath::read_test

@@ -3,7 +3,7 @@
 #include "tests/read/support.hpp"
 
 namespace seampath::read_test {
-namespace {
+namespace text_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -126,5 +126,5 @@ TEST(ReadText, TheFirstBadLineIsNamedHoweverManyThereAre) {
     EXPECT_THAT(error_of(bytes, kText), HasSubstr("line 54321: "));
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace seampath::read_test

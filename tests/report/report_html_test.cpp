@@ -13,7 +13,7 @@
 #include "tests/report/example_part.hpp"
 
 namespace seampath::test {
-namespace {
+namespace report_html_test {
 
 using Json = nlohmann::json;
 
@@ -204,5 +204,5 @@ TEST_F(ReportInBrowser, KeepsTheStillPictureWithoutWebGl) {
     EXPECT_FALSE(holds(document, "class=\"live\""));
 }
 
-}  // namespace
+}  // namespace report_html_test
 }  // namespace seampath::test

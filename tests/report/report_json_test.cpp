@@ -8,7 +8,7 @@
 #include "tests/report/example_part.hpp"
 
 namespace seampath::test {
-namespace {
+namespace report_json_test {
 
 using Json = nlohmann::json;
 using testing::Contains;
@@ -161,5 +161,5 @@ TEST(ReportJson, RefusesASeamWithoutDeviation) {
     EXPECT_THROW(report_json(part), InternalError);
 }
 
-}  // namespace
+}  // namespace report_json_test
 }  // namespace seampath::test

@@ -8,7 +8,7 @@
 #include "pipeline/report_rows.hpp"
 
 namespace seampath {
-namespace {
+namespace report_text_test {
 
 TEST(ReportText, RoundsForPeople) {
     EXPECT_EQ(decimal(0.0125, 3), "0.013");  // the double is above 0.0125
@@ -61,5 +61,5 @@ TEST(ReportText, ShowsValues) {
     EXPECT_EQ(exact({"a", "", std::string("x<y"), "", "", 0}), "x<y");
 }
 
-}  // namespace
+}  // namespace report_text_test
 }  // namespace seampath

@@ -8,7 +8,7 @@
 #include "tests/report/example_part.hpp"
 
 namespace seampath::test {
-namespace {
+namespace report_view_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -152,5 +152,5 @@ TEST(ReportView, StillPictureShowsCloudAndSeams) {
     EXPECT_THAT(view_svg(view_scene(example_part(true))), Not(HasSubstr(kOutOfToleranceColour)));
 }
 
-}  // namespace
+}  // namespace report_view_test
 }  // namespace seampath::test

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace seampath {
-namespace {
+namespace svg_test {
 
 using testing::DoubleNear;
 using testing::Each;
@@ -92,5 +92,5 @@ TEST(Svg, ThinsLongLinesWithoutLosingAnExtreme) {
     EXPECT_EQ(std::count(y.begin(), y.end(), 210.0), 1);
 }
 
-}  // namespace
+}  // namespace svg_test
 }  // namespace seampath

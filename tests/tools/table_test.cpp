@@ -9,7 +9,7 @@
 #include "tests/pipeline/run_support.hpp"
 
 namespace seampath {
-namespace {
+namespace table_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -72,5 +72,5 @@ TEST_F(TableFile, RefusesWhatIsNoFileOrTooLarge) {
     EXPECT_THROW(read_table(file_), InputError);
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace seampath

@@ -11,7 +11,7 @@
 #include "tests/geometry/curves.hpp"
 
 namespace seampath {
-namespace {
+namespace validate_test {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
@@ -208,5 +208,5 @@ TEST(Validate, RefusesAScanWithoutSurfaces) {
         testing::ThrowsMessage<InputError>(StartsWith("validate: the scan has 2 points")));
 }
 
-}  // namespace
+}  // namespace validate_test
 }  // namespace seampath
