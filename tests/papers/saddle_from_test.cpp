@@ -6,11 +6,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/artefact.hpp"
-#include "pipeline/codec.hpp"
-#include "pipeline/config.hpp"
 #include "tests/cli/spawn.hpp"
 #include "tests/papers/tables.hpp"
+#include "tests/papers/written_run.hpp"
 
 namespace seampath {
 namespace {
@@ -39,14 +37,6 @@ SeamModel no_saddle() {
     model.model = "spline";
     model.reason = "no saddle: neither flank is a cylinder";
     return model;
-}
-
-/// What `--from` reads of a run.
-void write_run(const fs::path& folder, const std::vector<SeamModel>& models, const Config& config = {}) {
-    fs::create_directories(folder);
-    std::ofstream(folder / "4-models.json", std::ios::binary)
-        << artefact_text("fit", std::string(64, '0'), encode(models));
-    std::ofstream(folder / "config.resolved.json", std::ios::binary) << config_json(config);
 }
 
 Outcome from(const fs::path& run, const fs::path& out, const Words& more) {
