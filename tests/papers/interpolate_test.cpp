@@ -267,6 +267,9 @@ TEST(Interpolate, SaysWhatIsWrongWithTheTable) {
     EXPECT_THAT(message(Method::periodic, {1, 2, 3, 4}, {1, 1, 1, 2}), HasSubstr("from y = 1 to y = 2; at least 4"));
     EXPECT_THAT(message(Method::periodic, {1, 2, 3}, {1, 2, 1}), HasSubstr("has 3 rows"));
     EXPECT_THAT(message(Method::lagrange, {1, 2}, {1, 1}, of_degree(0)), HasSubstr("degree 0; 1 to 40"));
+    InterpolateOptions slopes;
+    slopes.end_slopes = {0, INFINITY};
+    EXPECT_THAT(message(Method::clamped, {1, 2}, {1, 1}, slopes), HasSubstr("an end slope is inf"));
 }
 
 }  // namespace
