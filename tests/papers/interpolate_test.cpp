@@ -1,6 +1,7 @@
 #include "stages/geometry/interpolate.hpp"
 
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -217,6 +218,36 @@ TEST(Interpolate, DistanceIsTheShortest) {
             EXPECT_LE(s.distance[i], brute + 1e-9) << name(method);
             EXPECT_LE(s.distance[i], s.error[i]) << name(method);
         }
+    }
+}
+
+// Of data that scatter far more than their steps, |e| reaches across the whole table, but the line is near.
+TEST(Interpolate, DistancesFromWildLinesAreFoundNearby) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> any(0, 1e6);
+    Values x, y;
+    std::vector<Vector2d> checks;
+    for (int i = 0; i < 400; ++i) {
+        x.push_back(i);
+        y.push_back(any(random));
+        checks.emplace_back(std::min(i + 0.5, 399.0), any(random));
+    }
+    Interpolant line = interpolate(Method::linear, x, y, {});
+    std::size_t looks = 0;
+    line.at = [at = line.at, &looks](double t) {
+        ++looks;
+        return at(t);
+    };
+    const CheckStatistics s = check_points(line, checks);
+    EXPECT_LT(looks, 10000 * checks.size()) << "a hundred thousand for each when all within |e| is looked at";
+    for (std::size_t i = 0; i < checks.size(); i += 10) {
+        double exact = 1e9;
+        for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+            const Vector2d a(x[k], y[k]), b(x[k + 1], y[k + 1]);
+            const double share = std::clamp((checks[i] - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+            exact = std::min(exact, (a + share * (b - a) - checks[i]).norm());
+        }
+        EXPECT_NEAR(s.distance[i], exact, 1e-5 * (1 + exact)) << i;
     }
 }
 
