@@ -109,12 +109,15 @@ TEST(SaddleFrom, ReportsAllSaddlesOrTheOneAskedFor) {
     const TestFolder folder;
     Config config;
     config.fit.branch_radius_mm = {30, 0.1};
-    write_run(folder.path() / "run", {fitted(30, 80, 90, 0), no_saddle(), fitted(30.1, 80, 90, 0)}, config);
+    SeamModel oval = fitted(30.1, 80, 90, 0);
+    oval.model = "saddle with smooth offsets";
+    write_run(folder.path() / "run", {fitted(30, 80, 90, 0), no_saddle(), oval}, config);
     const Words nominal{"--branch-radius-mm", "30", "--header-radius-mm", "80"};
     const Outcome all = from(folder.path() / "run", folder.path() / "out", nominal);
     ASSERT_EQ(all.status, 0) << all.err;
     EXPECT_THAT(all.out, AllOf(HasSubstr("seam 0 is a saddle"), HasSubstr("seam 2 is a saddle"),
-                               HasSubstr("the fit knew dimensions beforehand")));
+                               HasSubstr("the fit knew dimensions beforehand"),
+                               HasSubstr("; seam 2: the fitted seam's smooth offsets from its saddle are not in")));
     Words one = nominal;
     one.insert(one.end(), {"--seam", "2", "--json"});
     const Outcome second = from(folder.path() / "run", folder.path() / "out", one);
