@@ -137,6 +137,21 @@ TEST(Interpolate, TwoRowsAreALine) {
     }
 }
 
+// Its end slopes are those of parabolas through three rows, or as asked for.
+TEST(Interpolate, ClampedRepeatsAParabola) {
+    const auto f = [](double v) { return 3 - 2 * v + 0.5 * v * v; };
+    Values x{-1, 0.5, 0.7, 3, 4}, y;
+    std::transform(x.begin(), x.end(), std::back_inserter(y), f);
+    InterpolateOptions slopes;
+    slopes.end_slopes = {-3, 2};  // f'
+    for (double at = -1; at <= 4; at += 0.1) {
+        EXPECT_NEAR(interpolate(Method::clamped, x, y, {}).value(at), f(at), 1e-13) << at;
+        EXPECT_NEAR(interpolate(Method::clamped, x, y, slopes).value(at), f(at), 1e-13) << at;
+    }
+    slopes.end_slopes = {0, 2};
+    EXPECT_GT(std::abs(interpolate(Method::clamped, x, y, slopes).value(-0.5) - f(-0.5)), 0.1);
+}
+
 // The mirror image of a table gives the mirror image of the line.
 TEST(Interpolate, MirrorsWithTheTable) {
     const TableFour table;
