@@ -51,11 +51,11 @@ std::vector<Saddle> saddles_of(const SaddleFrom& from) {
     return saddles;
 }
 
-/// What the differences don't show: dimensions are those of the saddle, wherever the seam itself is off it.
+/// What the differences don't show: how an open seam is off the saddle of its dimensions.
 std::string offset_remark(const std::vector<Saddle>& saddles) {
     std::string seams;
     for (const Saddle& saddle : saddles) {
-        if (saddle.model.model != name(FitModel::saddle)) {
+        if (has_offsets(saddle.model) && !saddle.model.closed) {
             seams += (seams.empty() ? "seam " : ", ") + std::to_string(saddle.seam);
         }
     }
@@ -94,7 +94,7 @@ int compare_with_nominal(const SaddleFrom& from, const SaddleDimensions& nominal
     const std::string offsets = offset_remark(saddles);
     remark += (remark.empty() || offsets.empty() ? "" : "; ") + offsets;
     for (const Saddle& saddle : saddles) {
-        differences.push_back(saddle_difference(saddle.seam, *saddle.model.saddle, nominal));
+        differences.push_back(saddle_difference(saddle.seam, saddle.model, nominal));
         text += (text.empty() ? "" : "\n") + seam_text(saddle.seam, saddle.model) + "\n" +
                 saddle_difference_text(differences.back());
         seams.push_back(saddle_difference_json(differences.back()));
