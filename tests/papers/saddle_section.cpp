@@ -149,8 +149,7 @@ std::string groove_passes() {
            "8 "
            "\\\n        --bead-area-mm2 20 --out out/passes\n\n"
            "A saddle that `seampath run` fitted to a scan is held against its drawing, dimension by dimension and "
-           "along "
-           "the seam, by\n\n"
+           "along the seam, where it is out of round included, by\n\n"
            "    build/seampath saddle --from out/part --header-radius-mm 60 --branch-radius-mm 30 --out "
            "out/as-built\n\n";
 }
