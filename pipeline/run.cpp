@@ -4,6 +4,7 @@
 
 #include "pipeline/arms.hpp"
 #include "pipeline/digest.hpp"
+#include "pipeline/pose_option.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/summary.hpp"
 #include "pipeline/tables.hpp"
@@ -23,13 +24,6 @@ std::vector<int> seams_to_weld(const PartResult& part) {
         }
     }
     return seams;
-}
-
-Eigen::Isometry3d pose_of(const std::vector<double>& p) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = Eigen::Vector3d(p.at(0), p.at(1), p.at(2));
-    pose.linear() = Eigen::Quaterniond(p.at(3), p.at(4), p.at(5), p.at(6)).normalized().toRotationMatrix();
-    return pose;
 }
 
 /// The arm of plan.arm in its place, and what a plan with it depends on beside the plan's own options.

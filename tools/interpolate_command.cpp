@@ -125,7 +125,7 @@ void add(Method method, const Arguments& given, Comparison& comparison) {
     }
 }
 
-/// With "all", methods that can't serve this table are left out, with the reason.
+/// With "all", methods that can't serve this table are left out, with the reason; there must be one that can.
 void add_all(const Arguments& given, Comparison& comparison) {
     for (std::size_t m = 0; m < kMethodNames.size(); ++m) {
         const auto method = static_cast<Method>(m);
@@ -134,6 +134,9 @@ void add_all(const Arguments& given, Comparison& comparison) {
         } catch (const InputError& error) {
             comparison.left_out.emplace_back(name(method), error.what());
         }
+    }
+    if (comparison.results.empty()) {
+        throw InputError(comparison.left_out.back().second);  // what even straight lines can't be laid through
     }
 }
 

@@ -157,9 +157,14 @@ SeamComparison compare_methods(const Seam& seam, const MeasuredSeam& measured, s
     comparison.measured = measured.p.size();
     comparison.spline = trial(measured.spline, measured);
     std::vector<Nodes> equal, curvature;
-    for (const std::size_t count : counts) {
-        equal.push_back(equal_nodes(seam, std::min(count, seam.points.size())));
-        curvature.push_back(curvature_nodes(seam, std::min(count, seam.points.size())));
+    std::size_t last = 0;
+    for (const std::size_t wanted : counts) {
+        const std::size_t count = std::min(wanted, seam.points.size());
+        if (count > last) {
+            equal.push_back(equal_nodes(seam, count));
+            curvature.push_back(curvature_nodes(seam, count));
+        }
+        last = count;
     }
     comparison.equal = rank(seam, measured, equal, true);
     comparison.curvature = rank(seam, measured, curvature, false);

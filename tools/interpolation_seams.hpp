@@ -72,7 +72,7 @@ struct SeamComparison {
     SeamLine best;          ///< of least rms in both rankings
 };
 
-/// `counts` ascend; a seam of fewer points takes them all.
+/// `counts` ascend; a seam of fewer points takes them all, once.
 SeamComparison compare_methods(const Seam& seam, const MeasuredSeam& measured, std::span<const std::size_t> counts);
 
 std::string seam_comparison_text(const SeamComparison& comparison);

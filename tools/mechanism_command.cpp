@@ -11,8 +11,9 @@
 #include "stages/error.hpp"
 #include "stages/mechanism/mechanism.hpp"
 #include "stages/text.hpp"
+#include "tools/choice.hpp"
 #include "tools/commands.hpp"
-#include "tools/table.hpp"
+#include "tools/mechanism_path.hpp"
 
 namespace seampath {
 namespace {
@@ -28,20 +29,12 @@ struct Arguments {
     double beta_step_deg = 5;
     std::vector<double> from, to;
     std::string path;
+    std::optional<int> seam;
     std::string method = "least-distance";
     std::optional<double> finest_deg;
     std::string out;
     bool json = false;
 };
-
-GridMethod method_of(const std::string& word) {
-    const auto found = std::find(kGridMethodNames.begin(), kGridMethodNames.end(), word);
-    if (found == kGridMethodNames.end()) {
-        throw InputError("--method: \"" + word + "\" is no method; there are " + join(kGridMethodNames) +
-                         hint(word, kGridMethodNames));
-    }
-    return static_cast<GridMethod>(found - kGridMethodNames.begin());
-}
 
 Vector2d point_of(const char* option, const std::vector<double>& values) {
     if (values.size() != 2) {
@@ -51,42 +44,29 @@ Vector2d point_of(const char* option, const std::vector<double>& values) {
     return {values[0], values[1]};
 }
 
-/// Columns x and y, by name where there is a header, else the first two; anything else, such as z, is left out: the
-/// path is projected to the mechanism's plane.
-std::vector<Vector2d> polyline_of(const fs::path& file) {
-    const Table table = read_table(file);
-    const auto column = [&](std::string_view axis, std::size_t otherwise) {
-        for (std::size_t k = 0; k < table.header.size(); ++k) {
-            if (table.header[k] == axis || table.header[k] == std::string(axis) + "_mm") {
-                return k;
-            }
-        }
-        return otherwise;
-    };
-    const std::size_t x = column("x", 0), y = column("y", 1);
-    if (table.rows.front().size() < 2 || x == y) {
-        throw InputError(file.string() + ": there are no two columns for x and y; a row X,Y in mm a point is needed");
-    }
-    std::vector<Vector2d> points;
-    for (const auto& row : table.rows) {
-        points.emplace_back(row[x], row[y]);
-    }
-    return points;
-}
-
-std::vector<Vector2d> wanted_path(const Arguments& given) {
+MechanismPath wanted_path(const Arguments& given) {
     const bool line = !given.from.empty() && !given.to.empty();
     if (line == !given.path.empty() || given.from.empty() != given.to.empty()) {
         throw InputError("mechanism: a path is needed, and one only: --from X,Y with --to X,Y, or --path FILE.csv");
     }
-    if (line) {
-        return {point_of("--from", given.from), point_of("--to", given.to)};
+    if (line && given.seam) {
+        throw InputError("--seam: is for the seams that --path names; leave it out");
     }
-    return polyline_of(given.path);
+    if (line) {
+        return {{point_of("--from", given.from), point_of("--to", given.to)}, std::nullopt};
+    }
+    return mechanism_path(given.path, given.seam);
 }
 
 Json error_json(const PathError& error) {
     return {{"nodes", error.nodes}, {"rms_mm", error.rms_mm}, {"max_mm", error.max_mm}};
+}
+
+/// What is left out by the projection to the mechanism's plane.
+std::string height_text(const MechanismPath& wanted) {
+    return wanted.height_mm ? "path projected along z, which goes from " + fixed((*wanted.height_mm)[0], 3) + " to " +
+                                  fixed((*wanted.height_mm)[1], 3) + " mm\n"
+                            : "";
 }
 
 Json path_json(const TwoTierGrid& grid, const GridPath& path, const std::string& method) {
@@ -169,25 +149,29 @@ std::string path_text(const TwoTierGrid& grid, const GridPath& path) {
 }
 
 int two_tier(const Arguments& given) {
-    const GridMethod method = method_of(given.method);
+    const GridMethod method = static_cast<GridMethod>(choice("--method", given.method, kGridMethodNames));
     const TwoTierGrid grid =
         two_tier_grid(given.radius_mm, given.alpha_step_deg * kDegree, given.beta_step_deg * kDegree);
-    const std::vector<Vector2d> wanted = wanted_path(given);
-    const GridPath path = follow(grid, wanted, method);
+    const MechanismPath wanted = wanted_path(given);
+    const GridPath path = follow(grid, wanted.points, method);
     Json json = path_json(grid, path, given.method);
+    if (wanted.height_mm) {
+        json["height_mm"] = *wanted.height_mm;
+    }
     if (given.finest_deg) {
-        json["series"] = series_json(given, wanted, method);
+        json["series"] = series_json(given, wanted.points, method);
     }
     if (!given.out.empty()) {
         const RunFolder folder(given.out);
         folder.write("steps.csv", steps_csv(grid, path));
-        folder.write("grid.svg", mechanism_svg(grid, wanted, path));
+        folder.write("grid.svg", mechanism_svg(grid, wanted.points, path));
         folder.write("mechanism.json", json.dump(4) + "\n");
     }
     if (given.json) {
         std::cout << json.dump(4) << "\n";
     } else {
-        std::cout << path_text(grid, path) << (given.finest_deg ? "\n" + series_text(json.at("series")) : "");
+        std::cout << height_text(wanted) << path_text(grid, path)
+                  << (given.finest_deg ? "\n" + series_text(json.at("series")) : "");
     }
     return kPass;
 }
@@ -201,8 +185,8 @@ Command mechanism_command(CLI::App& program) {
         "Examples:\n"
         "  seampath mechanism two-tier --from -350,-100 --to 160,280\n"
         "  seampath mechanism two-tier --from -350,-100 --to 160,280 --method bresenham --table 0.01\n"
-        "  seampath mechanism two-tier --radius-mm 800 --alpha-step-deg 0.02 --beta-step-deg 0.01 --path seam.csv "
-        "--method optimal --out out/steps\n";
+        "  seampath mechanism two-tier --radius-mm 800 --alpha-step-deg 0.02 --beta-step-deg 0.01 --path out/part "
+        "--seam 0 --method optimal --out out/steps\n";
     app->footer(examples);
     const auto given = std::make_shared<Arguments>();
     CLI::App* tier = app->add_subcommand("two-tier", "a rod on a turning disc (Naumov et al.)");
@@ -214,7 +198,11 @@ Command mechanism_command(CLI::App& program) {
         ->capture_default_str();
     tier->add_option("--from", given->from, "X,Y of the line's start, mm")->delimiter(',')->allow_extra_args(false);
     tier->add_option("--to", given->to, "X,Y of its end")->delimiter(',')->allow_extra_args(false);
-    tier->add_option("--path", given->path, "CSV file of a polyline instead: columns x and y, mm; others are left out");
+    tier->add_option(
+        "--path", given->path,
+        "CSV file of a polyline instead, columns x and y, mm; or the folder of a run, for one of its seams, in "
+        "the base that its export.base_from_scan says; projected along z");
+    tier->add_option("--seam", given->seam, "which seam of the run, or of the file's column seam");
     tier->add_option("--method", given->method, "how nodes are chosen: " + join(kGridMethodNames))
         ->capture_default_str();
     tier->add_option("--table", given->finest_deg, "also the errors on grids that halve down to this step, deg");

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "stages/error.hpp"
+#include "stages/fit/fit.hpp"
+#include "tools/saddle_form.hpp"
 
 namespace seampath {
 namespace {
@@ -73,6 +75,19 @@ void add_sigmas(SaddleDifference& d, const std::vector<Compared>& dimensions, co
     }
 }
 
+std::vector<double> compared_at() {
+    std::vector<double> thetas;
+    for (int k = 0; k < kPlaces; ++k) {
+        thetas.push_back(2 * std::numbers::pi * k / kPlaces);
+    }
+    return thetas;
+}
+
+std::vector<Vector3d> form_of(const SeamModel& model, const SaddleCurve& saddle, const std::vector<double>& thetas) {
+    return has_offsets(model) && model.closed ? form_differences(model.curve, saddle, thetas)
+                                              : std::vector<Vector3d>(thetas.size(), Vector3d::Zero());
+}
+
 }  // namespace
 
 SaddleDimensions dimensions_of(const SaddleParameters& fitted, const std::optional<SaddleDimensions>& like) {
@@ -92,7 +107,12 @@ SaddleDimensions dimensions_of(const SaddleParameters& fitted, const std::option
     return d;
 }
 
-SaddleDifference saddle_difference(std::size_t seam, const SaddleParameters& fitted, const SaddleDimensions& nominal) {
+bool has_offsets(const SeamModel& fitted) {
+    return fitted.model != name(FitModel::saddle);
+}
+
+SaddleDifference saddle_difference(std::size_t seam, const SeamModel& model, const SaddleDimensions& nominal) {
+    const SaddleParameters& fitted = model.saddle.value();
     SaddleDifference d;
     d.seam = seam;
     d.nominal = nominal;
@@ -111,14 +131,17 @@ SaddleDifference saddle_difference(std::size_t seam, const SaddleParameters& fit
     const SaddleCurve is = saddle_of(d.fitted), should = saddle_of(nominal);
     d.fitted_length_mm = is.length();
     d.nominal_length_mm = should.length();
+    const std::vector<double> thetas = compared_at();
+    const std::vector<Vector3d> form = form_of(model, is, thetas);
     double sum = 0;
-    for (int k = 0; k < kPlaces; ++k) {
+    for (std::size_t k = 0; k < thetas.size(); ++k) {
         PlaceDifference place;
-        place.theta = 2 * std::numbers::pi * k / kPlaces;
+        place.theta = thetas[k];
         const SaddlePoint at = should.at(place.theta), there = is.at(place.theta);
         place.station_mm = should.station(place.theta);
         place.nominal = at.p;
-        place.difference = there.p - at.p;
+        place.difference = there.p + form[k] - at.p;
+        place.form_mm = form[k].norm();
         place.branch_wall_mm = place.difference.dot(at.n1);
         place.header_wall_mm = place.difference.dot(at.n2);
         place.distance_mm = square_to(place.difference, at.tangent).norm();

@@ -27,6 +27,7 @@ struct PlaceDifference {
     double station_mm = 0;       ///< along the nominal seam
     Eigen::Vector3d nominal;     ///< mm, in the frame of SaddleDimensions
     Eigen::Vector3d difference;  ///< fitted - nominal, mm
+    double form_mm = 0;          ///< of that, how far the fitted seam is off the saddle of its own dimensions
     double branch_wall_mm = 0;   ///< along the nominal branch's outward normal
     double header_wall_mm = 0;   ///< along the nominal header's outward normal
     double distance_mm = 0;      ///< of the part square to travel
@@ -49,9 +50,13 @@ struct SaddleDifference {
 /// whose fit does not keep its half angle.
 SaddleDimensions dimensions_of(const SaddleParameters& fitted, const std::optional<SaddleDimensions>& like);
 
-/// Both in the frame of SaddleDimensions: a shift or a turn of the whole part is no difference. Throws InputError when
-/// the headers are of different shapes, and as SaddleCurve does.
-SaddleDifference saddle_difference(std::size_t seam, const SaddleParameters& fitted, const SaddleDimensions& nominal);
+/// Both in the frame of SaddleDimensions: a shift or a turn of the whole part is no difference. Where a closed seam was
+/// fitted with smooth offsets from its saddle, these are part of the difference; of one with ends they are not. Throws
+/// InputError when the headers are of different shapes, and as SaddleCurve does.
+SaddleDifference saddle_difference(std::size_t seam, const SeamModel& fitted, const SaddleDimensions& nominal);
+
+/// Whether a fitted saddle has smooth offsets.
+bool has_offsets(const SeamModel& fitted);
 
 std::string saddle_difference_text(const SaddleDifference& difference);
 nlohmann::ordered_json saddle_difference_json(const SaddleDifference& difference);

@@ -79,13 +79,13 @@ std::string saddle_difference_text(const SaddleDifference& d) {
     }
     dimensions.push_back({"length_mm", fixed(d.fitted_length_mm, 4), "", fixed(d.nominal_length_mm, 4),
                           fixed(d.fitted_length_mm - d.nominal_length_mm, 4), ""});
-    Rows places{{"branch angle deg", "station mm", "off branch mm", "off header mm", "distance mm", "1 sigma mm",
-                 "opening deg"}};
+    Rows places{{"branch angle deg", "station mm", "off branch mm", "off header mm", "distance mm", "its form mm",
+                 "1 sigma mm", "opening deg"}};
     for (std::size_t i = 0; i < d.places.size(); i += d.places.size() / kPrinted) {
         const PlaceDifference& p = d.places[i];
         places.push_back({fixed(p.theta / kDegree, 0), fixed(p.station_mm, 2), fixed(p.branch_wall_mm, 4),
-                          fixed(p.header_wall_mm, 4), fixed(p.distance_mm, 4), fixed(p.sigma_mm, 4),
-                          fixed(p.opening / kDegree, 3)});
+                          fixed(p.header_wall_mm, 4), fixed(p.distance_mm, 4), fixed(p.form_mm, 4),
+                          fixed(p.sigma_mm, 4), fixed(p.opening / kDegree, 3)});
     }
     return aligned(dimensions) + "\n" + aligned(places) + "largest distance " + fixed(d.worst.distance_mm, 4) +
            " mm at branch angle " + fixed(d.worst.theta / kDegree, 0) + " deg, rms " + fixed(d.rms_mm, 4) + " mm\n";
@@ -109,6 +109,7 @@ Json saddle_difference_json(const SaddleDifference& d) {
                           {"branch_wall_mm", p.branch_wall_mm},
                           {"header_wall_mm", p.header_wall_mm},
                           {"distance_mm", p.distance_mm},
+                          {"form_mm", p.form_mm},
                           {"sigma_mm", p.sigma_mm},
                           {"opening_deg", p.opening / kDegree}});
     }
@@ -126,14 +127,14 @@ Json saddle_difference_json(const SaddleDifference& d) {
 std::string saddle_difference_csv(const std::vector<SaddleDifference>& differences) {
     std::string text =
         "# fitted - nominal at the same branch angle; frame: nominal (right-handed)\n"
-        "seam,theta_deg,station_mm,x,y,z,dx_mm,dy_mm,dz_mm,branch_wall_mm,header_wall_mm,distance_mm,sigma_mm,"
+        "seam,theta_deg,station_mm,x,y,z,dx_mm,dy_mm,dz_mm,branch_wall_mm,header_wall_mm,distance_mm,form_mm,sigma_mm,"
         "opening_deg\n";
     for (const SaddleDifference& d : differences) {
         for (const PlaceDifference& p : d.places) {
             text += std::to_string(d.seam);
             for (const double value : {p.theta / kDegree, p.station_mm, p.nominal.x(), p.nominal.y(), p.nominal.z(),
                                        p.difference.x(), p.difference.y(), p.difference.z(), p.branch_wall_mm,
-                                       p.header_wall_mm, p.distance_mm, p.sigma_mm, p.opening / kDegree}) {
+                                       p.header_wall_mm, p.distance_mm, p.form_mm, p.sigma_mm, p.opening / kDegree}) {
                 text += ',' + shortest(value);
             }
             text += '\n';

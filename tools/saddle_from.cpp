@@ -51,6 +51,17 @@ std::vector<Saddle> saddles_of(const SaddleFrom& from) {
     return saddles;
 }
 
+/// What the differences don't show: how an open seam is off the saddle of its dimensions.
+std::string offset_remark(const std::vector<Saddle>& saddles) {
+    std::string seams;
+    for (const Saddle& saddle : saddles) {
+        if (has_offsets(saddle.model) && !saddle.model.closed) {
+            seams += (seams.empty() ? "seam " : ", ") + std::to_string(saddle.seam);
+        }
+    }
+    return seams.empty() ? "" : seams + ": the fitted seam's smooth offsets from its saddle are not in the differences";
+}
+
 /// The fit may have been told what it is now held against.
 std::string prior_remark(const SaddleFrom& from) {
     const FitOptions fit = read_config(from.folder / "config.resolved.json").fit;
@@ -79,9 +90,11 @@ int compare_with_nominal(const SaddleFrom& from, const SaddleDimensions& nominal
     nlohmann::ordered_json seams = nlohmann::ordered_json::array();
     std::string text;
     const std::vector<Saddle> saddles = saddles_of(from);
-    const std::string remark = prior_remark(from);
+    std::string remark = prior_remark(from);
+    const std::string offsets = offset_remark(saddles);
+    remark += (remark.empty() || offsets.empty() ? "" : "; ") + offsets;
     for (const Saddle& saddle : saddles) {
-        differences.push_back(saddle_difference(saddle.seam, *saddle.model.saddle, nominal));
+        differences.push_back(saddle_difference(saddle.seam, saddle.model, nominal));
         text += (text.empty() ? "" : "\n") + seam_text(saddle.seam, saddle.model) + "\n" +
                 saddle_difference_text(differences.back());
         seams.push_back(saddle_difference_json(differences.back()));

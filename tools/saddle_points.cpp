@@ -18,6 +18,10 @@ SaddleSteps saddle_steps(const SaddleCurve& curve, const SaddleStepOptions& give
     SaddleSteps i;
     i.law = static_cast<StepLaw>(choice("--step", given.step, kStepLawNames));
     i.pose = static_cast<PoseLaw>(choice("--pose", given.pose, kPoseLawNames));
+    if (!(given.pose_angle_deg > 0 && given.pose_angle_deg < 180)) {
+        throw InputError("--pose-angle-deg: " + shortest(given.pose_angle_deg) +
+                         " deg points into the branch's wall; an angle between 0 and 180 deg is needed");
+    }
     i.initial = given.pose_angle_deg * kDegree;
     i.speed_mm_s = speed_mm_s;
     if (given.period_s && !(*given.period_s > 0 && std::isfinite(*given.period_s))) {

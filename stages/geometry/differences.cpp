@@ -10,15 +10,30 @@
 namespace seampath {
 namespace {
 
-void check_steps(std::span<const double> x, double step) {
+/// The step that an unequal one is told apart from: not the mean, which it moves.
+double median_step(std::span<const double> x) {
+    std::vector<double> steps;
     for (std::size_t i = 1; i < x.size(); ++i) {
-        const double rounding = 4e-16 * std::max(std::abs(x[0]), std::abs(x.back()));
-        if (std::abs(x[i] - x[i - 1] - step) > 1e-9 * step + 2 * rounding) {
-            throw InputError("interpolate: the step from row " + std::to_string(i) + " to row " +
-                             std::to_string(i + 1) + " is " + shortest(x[i] - x[i - 1]) + " where the mean step is " +
-                             shortest(step) +
-                             "; finite differences need equal steps; use newton-divided, lagrange or a spline");
-        }
+        steps.push_back(x[i] - x[i - 1]);
+    }
+    const auto middle = steps.begin() + std::ssize(steps) / 2;
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle;
+}
+
+void check_steps(std::span<const double> x) {
+    const double step = median_step(x);
+    const double rounding = 4e-16 * std::max(std::abs(x[0]), std::abs(x.back()));
+    std::size_t worst = 1;
+    const auto off = [&](std::size_t i) { return std::abs(x[i] - x[i - 1] - step); };
+    for (std::size_t i = 2; i < x.size(); ++i) {
+        worst = off(i) > off(worst) ? i : worst;
+    }
+    if (off(worst) > 1e-9 * step + 2 * rounding) {
+        throw InputError("interpolate: the step from row " + std::to_string(worst) + " to row " +
+                         std::to_string(worst + 1) + " is " + shortest(x[worst] - x[worst - 1]) +
+                         " where the median step is " + shortest(step) +
+                         "; finite differences need equal steps; use newton-divided, lagrange or a spline");
     }
 }
 
@@ -84,7 +99,7 @@ DifferenceTable::DifferenceTable(std::span<const double> x, std::span<const doub
     : x_(x.begin(), x.end()) {
     ensure(x.size() >= 2 && x.size() == y.size(), "two values at least, one for each abscissa");
     step_ = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
-    check_steps(x, step_);
+    check_steps(x);
     column_.emplace_back(y.begin(), y.end());
     while (column_.size() <= std::min(max_order, x.size() - 1)) {
         const auto& last = column_.back();

@@ -30,6 +30,12 @@ void check(const Input& in) {
         throw InputError("interpolate: degree " + std::to_string(in.options.degree) + "; 1 to " +
                          std::to_string(kMaxDegree) + " was needed");
     }
+    for (const double slope : in.options.end_slopes.value_or(std::array<double, 2>{})) {
+        if (!(std::abs(slope) <= kLargest)) {
+            throw InputError("interpolate: an end slope is " + shortest(slope) +
+                             "; finite numbers of at most 1e100 were needed");
+        }
+    }
     for (std::size_t i = 0; i < in.x.size(); ++i) {
         if (!(std::abs(in.x[i]) <= kLargest && std::abs(in.y[i]) <= kLargest)) {
             throw InputError("interpolate: row " + std::to_string(i + 1) +

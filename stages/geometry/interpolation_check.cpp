@@ -17,26 +17,32 @@ double sample(const Interpolant& line, std::size_t i, int k) {
     return k == kSamples ? line.t[i + 1] : line.t[i] + (line.t[i + 1] - line.t[i]) * k / kSamples;
 }
 
-/// Shortest distance of p from the line: the best sample, refined between its neighbours. |e| bounds it, so only
-/// intervals within |e| of p.x, and one more on either side for lines that swing out, are looked at.
-double distance(const Interpolant& line, std::span<const double> nodes, const Vector2d& p, double error) {
-    const auto interval = [&](double x) {
-        const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
-        return static_cast<std::size_t>(above - nodes.begin()) - 1;
-    };
-    const std::size_t low = interval(p.x() - error), high = interval(p.x() + error);
-    const std::size_t first = low == 0 ? 0 : low - 1, last = std::min(high + 1, nodes.size() - 2);
+/// Shortest distance of p from interval i of the line, or `best` where that is less: the best sample, refined between
+/// its neighbours.
+double nearer(const Interpolant& line, std::size_t i, const Vector2d& p, double best) {
     const auto away = [&](double t) { return (line.at(t) - p).norm(); };
-    double best = error;
-    for (std::size_t i = first; i <= last; ++i) {
-        for (int k = 0; k < kSamples; ++k) {
-            // No point of the piece is nearer than its ends by more than half its length.
-            const double here = std::min(away(sample(line, i, k)), away(sample(line, i, k + 1)));
-            const double piece = (line.at(sample(line, i, k + 1)) - line.at(sample(line, i, k))).norm();
-            if (here - piece < best) {
-                best = std::min(best, away(golden_section(away, sample(line, i, k), sample(line, i, k + 1))));
-            }
+    for (int k = 0; k < kSamples; ++k) {
+        // No point of the piece is nearer than its ends by more than half its length.
+        const double here = std::min(away(sample(line, i, k)), away(sample(line, i, k + 1)));
+        const double piece = (line.at(sample(line, i, k + 1)) - line.at(sample(line, i, k))).norm();
+        if (here - piece < best) {
+            best = std::min(best, away(golden_section(away, sample(line, i, k), sample(line, i, k + 1))));
         }
+    }
+    return best;
+}
+
+/// Shortest distance of p from the line, |e| at most. From the interval that holds p.x outwards, on either side until
+/// all nodes to come are farther off in x, and one interval more for lines that swing out.
+double distance(const Interpolant& line, std::span<const double> nodes, const Vector2d& p, double error) {
+    const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, p.x());
+    const auto middle = static_cast<std::size_t>(above - nodes.begin()) - 1;
+    double best = nearer(line, middle, p, error);
+    for (std::size_t i = middle + 1; i + 1 < nodes.size() && nodes[i - 1] - p.x() <= best; ++i) {
+        best = nearer(line, i, p, best);
+    }
+    for (std::size_t i = middle; i > 0 && p.x() - nodes[i + 1] <= best; --i) {
+        best = nearer(line, i - 1, p, best);
     }
     return best;
 }

@@ -182,8 +182,14 @@ TEST(Differences, UnequalStepsAreAnErrorThatNamesTheRows) {
         const DifferenceTable table(Values{0, 1, 2, 3.5, 4}, Values{0, 0, 0, 0, 0}, 5);
         FAIL() << "no error";
     } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("from row 3 to row 4 is 1.5 where the mean step is 1; finite differences "
+        EXPECT_THAT(error.what(), HasSubstr("from row 3 to row 4 is 1.5 where the median step is 1; finite differences "
                                             "need equal steps; use newton-divided"));
+    }
+    try {
+        const DifferenceTable table(Values{0, 1, 3, 4, 5}, Values{0, 0, 0, 0, 0}, 5);
+        FAIL() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("from row 2 to row 3 is 2 where")) << "the odd one, not the first";
     }
     Values tenths;
     for (int i = 0; i < 1000; ++i) {

@@ -118,8 +118,8 @@ TEST(InterpolateCli, SaysWhatIsWrongAndWhere) {
     };
     const std::string repeated = file("repeated.csv", "x,y\n0,1\n2,1\n2,3\n"),
                       falling = file("falling.csv", "3,1\n2,1\n"), wide = file("wide.csv", "1,2,3\n"),
-                      one = file("one.csv", "1,2\n"), word = file("word.csv", "0,1\n1,abc\n"),
-                      outside = file("outside.csv", "x,y\n3,4\n11,2\n");
+                      one = file("one.csv", "1,2\n"), huge = file("huge.csv", "1e200,1\n2e200,2\n"),
+                      word = file("word.csv", "0,1\n1,abc\n"), outside = file("outside.csv", "x,y\n3,4\n11,2\n");
     const std::vector<std::pair<Words, std::string>> cases{
         {{repeated}, repeated + ":4: x = 2 after x = 2 in line 3; x must ascend"},
         {{falling}, falling + ":2: x = 2 after x = 3 in line 1"},
@@ -127,7 +127,7 @@ TEST(InterpolateCli, SaysWhatIsWrongAndWhere) {
         {{one}, one + ":1: the only row of numbers; at least 2 were needed"},
         {{word}, word + ":2: column 2: \"abc\" is no finite number"},
         {{kFour, "--check", outside}, outside + ":3: x = 11 lies outside the table, which goes from 0 to 10"},
-        {{kFour, "--method", "bessel"}, "the step from row 1 to row 2 is 0.15 where the mean step is"},
+        {{kFour, "--method", "bessel"}, "the step from row 5 to row 6 is 2 where the median step is 0.5;"},
         {{kFour, "--method", "periodic"}, "from y = 0 to y = 15.5; at least 4 rows and equal ends were needed"},
         {{kFour, "--method", "spline"}, "--method: \"spline\" is unknown; there are newton-forward, "},
         {{kFour, "--method", "perodic"}, "did you mean \"periodic\"?"},
@@ -136,6 +136,8 @@ TEST(InterpolateCli, SaysWhatIsWrongAndWhere) {
         {{kFour, "--degree", "0"}, "--degree: 0 is not between 1 and 40"},
         {{kFour, "--split", "nodes"}, "--split: \"nodes\" is unknown"},
         {{kFour, "--end-slopes", "1"}, "--end-slopes: 1 numbers; two were needed"},
+        {{kFour, "--method", "clamped", "--end-slopes", "nan,1"}, "an end slope is nan; finite numbers"},
+        {{huge}, "row 1 is not finite or beyond 1e100"},
         {{kFour, "--out", folder.path()}, "is no file name"}};
     for (const auto& [words, message] : cases) {
         const Outcome run = interpolate_program(words);

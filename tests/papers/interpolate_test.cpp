@@ -1,6 +1,7 @@
 #include "stages/geometry/interpolate.hpp"
 
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -136,6 +137,21 @@ TEST(Interpolate, TwoRowsAreALine) {
     }
 }
 
+// Its end slopes are those of parabolas through three rows, or as asked for.
+TEST(Interpolate, ClampedRepeatsAParabola) {
+    const auto f = [](double v) { return 3 - 2 * v + 0.5 * v * v; };
+    Values x{-1, 0.5, 0.7, 3, 4}, y;
+    std::transform(x.begin(), x.end(), std::back_inserter(y), f);
+    InterpolateOptions slopes;
+    slopes.end_slopes = {-3, 2};  // f'
+    for (double at = -1; at <= 4; at += 0.1) {
+        EXPECT_NEAR(interpolate(Method::clamped, x, y, {}).value(at), f(at), 1e-13) << at;
+        EXPECT_NEAR(interpolate(Method::clamped, x, y, slopes).value(at), f(at), 1e-13) << at;
+    }
+    slopes.end_slopes = {0, 2};
+    EXPECT_GT(std::abs(interpolate(Method::clamped, x, y, slopes).value(-0.5) - f(-0.5)), 0.1);
+}
+
 // The mirror image of a table gives the mirror image of the line.
 TEST(Interpolate, MirrorsWithTheTable) {
     const TableFour table;
@@ -220,6 +236,36 @@ TEST(Interpolate, DistanceIsTheShortest) {
     }
 }
 
+// Of data that scatter far more than their steps, |e| reaches across the whole table, but the line is near.
+TEST(Interpolate, DistancesFromWildLinesAreFoundNearby) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> any(0, 1e6);
+    Values x, y;
+    std::vector<Vector2d> checks;
+    for (int i = 0; i < 400; ++i) {
+        x.push_back(i);
+        y.push_back(any(random));
+        checks.emplace_back(std::min(i + 0.5, 399.0), any(random));
+    }
+    Interpolant line = interpolate(Method::linear, x, y, {});
+    std::size_t looks = 0;
+    line.at = [at = line.at, &looks](double t) {
+        ++looks;
+        return at(t);
+    };
+    const CheckStatistics s = check_points(line, checks);
+    EXPECT_LT(looks, 10000 * checks.size()) << "a hundred thousand for each when all within |e| is looked at";
+    for (std::size_t i = 0; i < checks.size(); i += 10) {
+        double exact = 1e9;
+        for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+            const Vector2d a(x[k], y[k]), b(x[k + 1], y[k + 1]);
+            const double share = std::clamp((checks[i] - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+            exact = std::min(exact, (a + share * (b - a) - checks[i]).norm());
+        }
+        EXPECT_NEAR(s.distance[i], exact, 1e-5 * (1 + exact)) << i;
+    }
+}
+
 TEST(Interpolate, OneCheckPointHasNoSampleVariance) {
     const TableFour table;
     const CheckStatistics s = check_points(table.line(Method::linear), std::vector{Vector2d(3, 6.2)});
@@ -267,6 +313,9 @@ TEST(Interpolate, SaysWhatIsWrongWithTheTable) {
     EXPECT_THAT(message(Method::periodic, {1, 2, 3, 4}, {1, 1, 1, 2}), HasSubstr("from y = 1 to y = 2; at least 4"));
     EXPECT_THAT(message(Method::periodic, {1, 2, 3}, {1, 2, 1}), HasSubstr("has 3 rows"));
     EXPECT_THAT(message(Method::lagrange, {1, 2}, {1, 1}, of_degree(0)), HasSubstr("degree 0; 1 to 40"));
+    InterpolateOptions slopes;
+    slopes.end_slopes = {0, INFINITY};
+    EXPECT_THAT(message(Method::clamped, {1, 2}, {1, 1}, slopes), HasSubstr("an end slope is inf"));
 }
 
 }  // namespace interpolate_test

@@ -28,6 +28,27 @@ std::string polynomial_table() {
                            {"error at x = 1, mm", "2.44", fixed(10 * (2.95 - p1), 3), "2.435546875"}});
 }
 
+/// Which formula the program takes where in a table of 11 rows, the degree being 5 at most.
+std::string rules_table() {
+    std::vector<double> x;
+    for (int i = 0; i <= 10; ++i) {
+        x.push_back(i);
+    }
+    const DifferenceTable table(x, x, 6);
+    const std::vector<double> places{0.125, 0.5, 0.875};
+    Rows rows{{"rows", "U below 0.25", "0.25 to 0.75", "above 0.75"}};
+    for (int i = 0; i < 10; ++i) {
+        std::vector<std::string> cells;
+        for (const double u : places) {
+            const Placement at = choose(table, i + u, 5);
+            cells.push_back(std::string(name(at.formula)) + " of degree " + std::to_string(at.degree) + " about row " +
+                            std::to_string(at.origin + 1));
+        }
+        rows.push_back({std::to_string(i + 1) + ", " + std::to_string(i + 2), cells[0], cells[1], cells[2]});
+    }
+    return markdown_table(rows);
+}
+
 struct PaperSeam {
     std::vector<double> x = paper_column("minejeva_table_4.csv", 0);
     std::vector<double> y = paper_column("minejeva_table_4.csv", 1);
@@ -116,8 +137,12 @@ std::string interpolation_section() {
            "; a line that is laid through x and y as functions of their distance does not, and is more than twice as "
            "near "
            "to the seam.\n\n"
-           "Departures from the print: (13) ends in (2n+1)! and Δ²ⁿ⁺¹y₋ₙ; (14) is over (n+1)!; (20) has the factor dᵢ "
-           "before its cubic term; (30) and (31) are second derivatives.\n\n";
+           "By the rules of section VI `--method classical` takes for each x, here between two rows of a table of "
+           "11,\n\n" +
+           rules_table() +
+           "Departures from the print: the rows of table I are scrambled; (13) ends in (2n+1)! and Δ²ⁿ⁺¹y₋ₙ; (14) is "
+           "over (n+1)!; (20) has the factor dᵢ before its cubic term; (30) and (31) are second derivatives. (32) to "
+           "(37) are right.\n\n";
 }
 
 }  // namespace seampath

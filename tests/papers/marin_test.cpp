@@ -43,7 +43,9 @@ TEST(Marin, TableThreeAndBetter) {
     EXPECT_LT(worst_difference(chord.t, paper_column("marin_table_3.csv", 0)), 5.1e-5);
     EXPECT_NEAR(chord.exact_energy, 247.9026, 5e-5);
     EXPECT_NEAR(exact.exact_energy, 173.511527, 5e-7);
-    EXPECT_LT(worst_difference(exact.t, paper_column("marin_table_3.csv", 1)), 2.65e-4) << "the paper stopped early";
+    const auto printed = paper_column("marin_table_3.csv", 1);
+    EXPECT_LT(worst_difference(exact.t, printed), 2.65e-4) << "the paper stopped early";
+    EXPECT_EQ(within_a_digit(printed, exact.t), 13) << "of 20";
     EXPECT_NEAR(diagonal.diagonal_energy, 236.905843, 5e-7);
     EXPECT_LT(worst_difference(diagonal.t, paper_column("marin_table_3.csv", 2)), 1.25e-4);
     const std::vector<double> ones{1, 1};
@@ -80,6 +82,27 @@ TEST(Marin, TableSevenToItsTwoDigits) {
     }
 }
 
+TEST(Marin, WorkCentreParametersFollowFromTableFiveButForRowThree) {
+    const WorkCentre centre = work_centre();
+    EXPECT_LT(centre.worst, 1e-4) << "of 16 parameters";
+    EXPECT_NEAR(centre.over_row_3, 0.826, 5e-4);
+    EXPECT_NEAR(centre.over_row_3_by_t, 0.775, 5e-4);
+}
+
+TEST(Marin, PeaksAndTravelTimesOfThePrintedParameters) {
+    const Bending bending(as_matrix(paper_points("marin_table_4.csv")), kRobotWeights);
+    const std::vector<double> peaks{314.0, 381.3, 137.1}, times{17.72, 19.53, 11.71};
+    for (std::size_t column = 0; column < 3; ++column) {
+        const auto largest = bending.largest(spacing(paper_column("marin_table_6.csv", column)));
+        double peak = 0;
+        for (std::size_t axis = 0; axis < 6; ++axis) {
+            peak = std::max(peak, largest[axis] / kRobotWeights[axis]);
+        }
+        EXPECT_NEAR(peak, peaks[column], 0.05) << column;
+        EXPECT_NEAR(std::sqrt(peak), times[column], 5e-3) << column;
+    }
+}
+
 TEST(Marin, LeastPeakShortensTheTravel) {
     const Points points = paper_points("marin_table_4.csv");
     const auto peak = [&](Objective objective) { return solved(points, objective, kRobotWeights).peak; };
@@ -87,6 +110,7 @@ TEST(Marin, LeastPeakShortensTheTravel) {
     EXPECT_LT(minimax, 80.77) << "found before by other means";
     EXPECT_NEAR(minimax, 80.25212, 2e-4) << "by sequential linear programming from 17 starts";
     EXPECT_NEAR(peak(Objective::exact), 121.3, 0.05);
+    EXPECT_NEAR(std::sqrt(peak(Objective::exact)), 11.01, 5e-3);
     EXPECT_NEAR(peak(Objective::diagonal), 137.05, 0.05);
     EXPECT_NEAR(std::sqrt(minimax), 8.958, 5e-4) << "travel time in s for limits in rad/s^2";
     EXPECT_NEAR(1 - std::sqrt(minimax / peak(Objective::diagonal)), 0.235, 5e-4) << "of the paper's best is saved";

@@ -1,15 +1,21 @@
+#include <chrono>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "stages/geometry/sampled_spline.hpp"
 #include "tests/cli/spawn.hpp"
 #include "tests/papers/tables.hpp"
+#include "tests/papers/written_run.hpp"
 
 namespace seampath {
 namespace mechanism_cli_test {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -85,6 +91,82 @@ TEST(MechanismCli, FollowsAPolylineProjectedToItsPlane) {
     EXPECT_LT(result.at("all").at("max_mm").get<double>(), 3);
     EXPECT_LT(result.at("end_gap_mm").get<double>(), 3);
     EXPECT_GT(result.at("nodes").get<int>(), 100);
+}
+
+// A ring of 60 mm, which the run's base sees tilted by 60 deg: an ellipse of 60 by 30 mm.
+TEST(MechanismCli, FollowsTheSeamOfARunProjectedToItsPlane) {
+    const TestFolder folder;
+    SeamModel ring;
+    ring.closed = true;
+    ring.curve =
+        spline_through([](double s) { return Eigen::Vector3d(60 * std::cos(s / 60), 60 * std::sin(s / 60), 0); },
+                       120 * std::numbers::pi, true, 1e-7)
+            .curve;
+    Config config;
+    config.export_.base_from_scan = {100, -50, 7, std::cos(std::numbers::pi / 6), std::sin(std::numbers::pi / 6), 0, 0};
+    const std::string one = folder.path() / "one", two = folder.path() / "two", out = folder.path() / "out";
+    write_run(one, {ring}, config);
+    write_run(two, {ring, ring}, config);
+    const Words fine{"--alpha-step-deg", "0.1", "--beta-step-deg", "0.1", "--out", out, "--json"};
+    const auto with = [&fine](Words words) {
+        words.insert(words.end(), fine.begin(), fine.end());
+        return two_tier_program(words);
+    };
+    const Outcome run = with({"--path", one});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json result = json::parse(run.out);
+    EXPECT_NEAR(result.at("height_mm")[0].get<double>(), 7 - 60 * std::sin(std::numbers::pi / 3), 1e-3);
+    EXPECT_NEAR(result.at("height_mm")[1].get<double>(), 7 + 60 * std::sin(std::numbers::pi / 3), 1e-3);
+    // From node to node in the ellipse's own angle: once round, and never off by more than a cell of 0.9 by 0.4 mm.
+    double turned = 0, before = 0;
+    for (const auto& row : read_table(fs::path(out) / "steps.csv").rows) {
+        const double u = (row[5] - 100) / 60, v = (row[6] + 50) / 30, angle = std::atan2(v, u);
+        EXPECT_LT(std::abs(std::hypot(u, v) - 1) * 60, 1.5);
+        turned += row[0] > 0 ? std::remainder(angle - before, 2 * std::numbers::pi) : 0;
+        before = angle;
+    }
+    EXPECT_NEAR(std::abs(turned), 2 * std::numbers::pi, 0.05) << "closed";
+    EXPECT_EQ(with({"--path", two, "--seam", "1"}).out, run.out);
+    EXPECT_THAT(two_tier_program({"--path", one}).out, HasSubstr("projected along z, which goes from -44.962 to"));
+    EXPECT_THAT(with({"--path", two}).err, HasSubstr("has 2 seams; the path is one of them"));
+    EXPECT_THAT(with({"--path", two, "--seam", "2"}).err, HasSubstr("--seam: 2; "));
+    EXPECT_THAT(with({"--path", folder.path()}).err, HasSubstr("has no 4-models.json"));
+}
+
+TEST(MechanismCli, OneOfTheSeamsOfATable) {
+    const TestFolder folder;
+    const std::string file = folder.path() / "seams.csv";
+    std::ofstream(file) << "seam,x,y,z\n0,1,2,3\n0,3,4,5\n1,100,0,8\n1,0,100,9\n";
+    const Words fine{"--alpha-step-deg", "0.5", "--beta-step-deg", "0.25", "--json"};
+    const auto with = [&fine](Words words) {
+        words.insert(words.end(), fine.begin(), fine.end());
+        return two_tier_program(words);
+    };
+    const Outcome run = with({"--path", file, "--seam", "1"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json result = json::parse(run.out);
+    EXPECT_EQ(result.at("height_mm"), json({8.0, 9.0}));
+    const json same = json::parse(with({"--from", "100,0", "--to", "0,100"}).out);
+    EXPECT_EQ(result.at("all"), same.at("all"));
+    EXPECT_THAT(with({"--path", file}).err, HasSubstr("has 2 seams; the path is one of them"));
+    EXPECT_THAT(with({"--path", file, "--seam", "5"}).err, HasSubstr("has no seam 5; its seams are 0 to 1"));
+    EXPECT_THAT(with({"--from", "1,2", "--to", "3,4", "--seam", "0"}).err, HasSubstr("--seam: is for the seams"));
+    std::ofstream(file) << "x,y\n1,2\n3,4\n";
+    EXPECT_THAT(with({"--path", file, "--seam", "0"}).err, HasSubstr("has no column \"seam\""));
+}
+
+// On a path of 1 m, down to steps of both axes of a hundredth of a degree, from start to end of the program.
+TEST(MechanismCli, TableOfAMetreTakesLessThanASecond) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome run = two_tier_program({"--from", "-300,-400", "--to", "290,404", "--alpha-step-deg", "10",
+                                          "--beta-step-deg", "10", "--table", "0.01", "--json"});
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json series = json::parse(run.out).at("series");
+    EXPECT_LE(series.back().at("alpha_step_deg").get<double>(), 0.01);
+    EXPECT_LE(series.back().at("beta_step_deg").get<double>(), 0.01);
+    EXPECT_GT(series.back().at("beats").get<int>(), 8000);
+    EXPECT_LT(took, 1 * SEAMPATH_SLOWDOWN);
 }
 
 TEST(MechanismCli, SaysWhatIsWrong) {

@@ -106,7 +106,10 @@ std::string mechanism_section() {
            "    build/seampath mechanism two-tier --radius-mm 500 --alpha-step-deg 10 --beta-step-deg 5 --from "
            "-350,-100 "
            "--to 160,280 --table 0.01\n\n" +
-           kinematics() + figures() + halving() + towards_the_centre();
+           kinematics() + figures() + halving() + towards_the_centre() +
+           "A seam that `seampath run` fitted is followed, projected to the mechanism's plane, by\n\n"
+           "    build/seampath mechanism two-tier --path out/part --seam 0 --alpha-step-deg 0.02 --beta-step-deg 0.01 "
+           "--out out/steps\n";
 }
 
 }  // namespace seampath

@@ -64,6 +64,20 @@ std::string energy_table() {
           fixed(exact6.exact_energy, 4), ""}});
 }
 
+std::string digits(const char* table, std::size_t column, const Parametrization& optimum) {
+    const auto printed = paper_column(table, column);
+    return std::to_string(within_a_digit(printed, optimum.t)) + " of " + std::to_string(printed.size());
+}
+
+std::string chord_parameters(const Points& six) {
+    const WorkCentre centre = work_centre();
+    return "t^CL of table VI is the chord length of the six angles without their weights (" +
+           worst(least(six, Objective::chord, {}).t, paper_column("marin_table_6.csv", 0)) +
+           " off at most). t^WC is that of table V from row 4 on (" + fixed(centre.worst, 5) +
+           " off at most); from row 2 over 3 to 4 the chords are " + fixed(centre.over_row_3, 3) +
+           " long where t^WC has " + fixed(centre.over_row_3_by_t, 3) + ": the position of row 3 is misprinted.";
+}
+
 std::string acceleration_table() {
     const Points six = paper_points("marin_table_4.csv");
     Rows rows{{"table VII: largest acceleration of axis", "1", "2", "3", "4", "5", "6"}};
@@ -126,11 +140,11 @@ std::string effort(const Points& points, const std::vector<double>& weights, Obj
 
 std::string effort_table() {
     const Points two = paper_points("marin_table_2.csv"), six = paper_points("marin_table_4.csv");
-    Rows rows{{"effort to come within", "1e-3", "1e-6", "1e-9"}};
+    Rows rows{{"effort to come within", "1e-3", "1e-6", "1e-8", "1e-9"}};
     const auto add = [&](const std::string& label, const Points& points, const std::vector<double>& weights,
                          Objective objective, Solver solver) {
         rows.push_back({label});
-        for (const double share : {1e-3, 1e-6, 1e-9}) {
+        for (const double share : {1e-3, 1e-6, 1e-8, 1e-9}) {
             rows.back().push_back(effort(points, weights, objective, solver, share));
         }
     };
@@ -139,6 +153,7 @@ std::string effort_table() {
     add("table II, (31): evaluations of L-BFGS", two, {}, Objective::exact, lbfgs);
     add("table IV, (34): iterations of the gradient projection", six, kRobotWeights, Objective::diagonal,
         gradient_projection);
+    add("table IV, (31): evaluations of L-BFGS", six, kRobotWeights, Objective::exact, lbfgs);
     add("table IV, (34): evaluations of L-BFGS", six, kRobotWeights, Objective::diagonal, lbfgs);
     return markdown_table(rows);
 }
@@ -147,6 +162,8 @@ std::string effort_table() {
 
 std::string parametrization_section() {
     const auto z = paper_column("marin_table_1.csv", 0);
+    const Points two = paper_points("marin_table_2.csv"), six = paper_points("marin_table_4.csv");
+    const double exact = least(six, Objective::exact, kRobotWeights).exact_energy;
     return "## Parametrization of points\n\n"
            "S. P. Marin, An Approach to Data Parametrization in Parametric Cubic Spline Interpolation Problems, "
            "Journal "
@@ -156,7 +173,12 @@ std::string parametrization_section() {
            "1,1,2,6,6,6\n\n" +
            energy_table() + "All eleven parameters of table I come out to their four digits, with |θ''| = " +
            fixed(least(as_points(z), Objective::exact, {}).max_acceleration[0], 4) +
-           " at every turn. In tables III and VI the paper stopped before the optimum.\n\n" + acceleration_table() +
+           " at every turn. In tables III and VI the paper stopped before the optimum: of t^EX " +
+           digits("marin_table_3.csv", 1, least(two, Objective::exact, {})) + ", of t^AP of table VI " +
+           digits("marin_table_6.csv", 2, least(six, Objective::diagonal, kRobotWeights)) +
+           " are within a unit of their last digit. Even at the optimum of (34) the energy (31) itself is " +
+           fixed(100 * (least(six, Objective::diagonal, kRobotWeights).exact_energy / exact - 1), 2) +
+           " % above its least. " + chord_parameters(six) + "\n\n" + acceleration_table() +
            "Of the eighteen, all come out at the printed parameters but that of axis 4 over (34), a misprint.\n\n"
            "    build/seampath parametrize tests/papers/marin_table_4.csv --objective minimax --limits "
            "1,1,2,6,6,6\n\n" +

@@ -86,6 +86,22 @@ TEST(Parametrize, GradientProjectionReachesTheSameMinimumSlowly) {
     EXPECT_NEAR(early.exact_energy / 173.511526628, 1, 1e-3);
 }
 
+TEST(Parametrize, GradientProjectionTakesAsManyIterationsAsItDid) {
+    const Points points = paper_points("marin_table_2.csv");
+    const auto excess_after = [&points](int iterations) {
+        ParametrizeOptions options;
+        options.objective = Objective::exact;
+        options.solver = Solver::gradient_projection;
+        options.tolerance = 1e-15;
+        options.max_evaluations = 1 + iterations;
+        return parametrize(points, options).exact_energy / 173.511526628 - 1;
+    };
+    for (const auto& [iterations, share] : {std::pair(15, 1e-3), std::pair(43, 1e-6), std::pair(73, 1e-9)}) {
+        EXPECT_LE(excess_after(iterations), share) << iterations;
+        EXPECT_GT(excess_after(iterations - 1), share) << iterations;
+    }
+}
+
 TEST(Parametrize, EnergyIsThatOfFullMatrices) {
     std::mt19937 random(1);
     for (const std::size_t count : {3u, 4u, 9u}) {
@@ -171,6 +187,12 @@ TEST(Parametrize, TwoPointsAreOneInterval) {
         EXPECT_THAT(two.t, testing::ElementsAre(0, 1)) << kObjectiveNames[i];
         EXPECT_EQ(two.exact_energy, 0);
     }
+}
+
+TEST(Parametrize, ChordAndCentripetalFollowTheDistances) {
+    const Points corner{Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(1, 4), Eigen::Vector2d(10, 4)};
+    EXPECT_LT(worst_difference(solved(corner, Objective::chord).t, {0, 1.0 / 14, 5.0 / 14, 1}), 1e-15);
+    EXPECT_LT(worst_difference(solved(corner, Objective::centripetal).t, {0, 1.0 / 6, 0.5, 1}), 1e-15);
 }
 
 TEST(Parametrize, FoleyWidensIntervalsBesideCorners) {

@@ -253,6 +253,8 @@ TEST(SaddleCli, SaysWhatCannotBeAndLeavesNothing) {
         {paper_and({"--period-s", "0"}), "--period-s: 0 is no period"},
         {paper_and({"--period-s", "1e-9"}), "more than 10 million"},
         {paper_and({"--steps", "0"}), "--steps: 0 is too few"},
+        {paper_and({"--pose", "paper", "--pose-angle-deg", "nan"}), "--pose-angle-deg: nan deg points into"},
+        {paper_and({"--pose", "paper", "--pose-angle-deg", "180"}), "--pose-angle-deg: 180 deg points into"},
         {paper_and({"--speed-mm-s", "-1"}), "--speed-mm-s: /plan/speed_mm_s: -1"},
         {paper_and({"--robot", "abc"}), "abc"}};
     for (const auto& [words, message] : cases) {

@@ -6,11 +6,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/artefact.hpp"
-#include "pipeline/codec.hpp"
-#include "pipeline/config.hpp"
+#include "stages/geometry/sampled_spline.hpp"
 #include "tests/cli/spawn.hpp"
 #include "tests/papers/tables.hpp"
+#include "tests/papers/written_run.hpp"
 
 namespace seampath {
 namespace saddle_from_test {
@@ -39,14 +38,6 @@ SeamModel no_saddle() {
     model.model = "spline";
     model.reason = "no saddle: neither flank is a cylinder";
     return model;
-}
-
-/// What `--from` reads of a run.
-void write_run(const fs::path& folder, const std::vector<SeamModel>& models, const Config& config = {}) {
-    fs::create_directories(folder);
-    std::ofstream(folder / "4-models.json", std::ios::binary)
-        << artefact_text("fit", std::string(64, '0'), encode(models));
-    std::ofstream(folder / "config.resolved.json", std::ios::binary) << config_json(config);
 }
 
 Outcome from(const fs::path& run, const fs::path& out, const Words& more) {
@@ -104,6 +95,37 @@ TEST(SaddleFrom, SigmaFollowsFromTheDimensions) {
     EXPECT_EQ(crown.at("distance_mm").get<double>(), 0);
 }
 
+// A branch with four bulges of 0.1 mm, scanned from elsewhere and followed the other way round: they are the difference
+// from a round one of its size, and come on top of that from a thinner one.
+TEST(SaddleFrom, TheSeamsOwnFormIsPartOfTheDifference) {
+    const TestFolder folder;
+    const auto bulge = [](double theta) { return 0.1 * std::cos(4 * theta); };
+    const Eigen::Isometry3d scan_from_saddle =
+        Eigen::Translation3d(100, -20, 5) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized());
+    SeamModel bulged = fitted(30, 80, 90, 0);
+    bulged.model = "saddle with smooth offsets";
+    bulged.closed = true;
+    const auto at = [&](double u) -> Eigen::Vector3d {
+        const double theta = 1 - u / 30, r = 30 + bulge(theta), x = r * std::sin(theta);
+        return scan_from_saddle * Eigen::Vector3d(x, r * std::cos(theta), std::sqrt(80 * 80 - x * x));
+    };
+    bulged.curve = spline_through(at, 60 * std::numbers::pi, true, 1e-7).curve;
+    write_run(folder.path() / "run", {bulged});
+    for (const double nominal : {30.0, 29.8}) {
+        const Outcome run = from(folder.path() / "run", folder.path() / "out",
+                                 {"--branch-radius-mm", std::to_string(nominal), "--header-radius-mm", "80", "--json"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const json seam = json::parse(run.out).at("seams").at(0);
+        EXPECT_EQ(json::parse(run.out).at("remark"), "");
+        for (const json& place : seam.at("places")) {
+            const double theta = place.at("theta_deg").get<double>() * kDegree;
+            EXPECT_NEAR(place.at("branch_wall_mm").get<double>(), 30 - nominal + bulge(theta), 1e-3) << theta;
+            EXPECT_NEAR(place.at("header_wall_mm").get<double>(), 0, 1e-3) << theta;
+            EXPECT_GE(place.at("form_mm").get<double>(), std::abs(bulge(theta)) - 1e-3) << theta;
+        }
+    }
+}
+
 TEST(SaddleFrom, SidesAreThoseOfTheDrawing) {
     const TestFolder folder;
     write_run(folder.path() / "run", {fitted(30, 80, 60, 10)});
@@ -119,12 +141,15 @@ TEST(SaddleFrom, ReportsAllSaddlesOrTheOneAskedFor) {
     const TestFolder folder;
     Config config;
     config.fit.branch_radius_mm = {30, 0.1};
-    write_run(folder.path() / "run", {fitted(30, 80, 90, 0), no_saddle(), fitted(30.1, 80, 90, 0)}, config);
+    SeamModel oval = fitted(30.1, 80, 90, 0);  // with ends
+    oval.model = "saddle with smooth offsets";
+    write_run(folder.path() / "run", {fitted(30, 80, 90, 0), no_saddle(), oval}, config);
     const Words nominal{"--branch-radius-mm", "30", "--header-radius-mm", "80"};
     const Outcome all = from(folder.path() / "run", folder.path() / "out", nominal);
     ASSERT_EQ(all.status, 0) << all.err;
     EXPECT_THAT(all.out, AllOf(HasSubstr("seam 0 is a saddle"), HasSubstr("seam 2 is a saddle"),
-                               HasSubstr("the fit knew dimensions beforehand")));
+                               HasSubstr("the fit knew dimensions beforehand"),
+                               HasSubstr("; seam 2: the fitted seam's smooth offsets from its saddle are not in")));
     Words one = nominal;
     one.insert(one.end(), {"--seam", "2", "--json"});
     const Outcome second = from(folder.path() / "run", folder.path() / "out", one);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "stages/angle.hpp"
+#include "stages/error.hpp"
 #include "stages/nominal/nominal.hpp"
 #include "stages/plan/plan.hpp"
 #include "stages/text.hpp"
@@ -82,8 +83,18 @@ std::string poses() {
                         fixed(torch_angle(side, PoseLaw::bisector, 0) / kDegree, 2)});
     }
     return "Both torch angles are from the branch's wall. The paper's law keeps the angle to the header's wall; the "
-           "bisector halves the opening, and is the default.\n\n" +
-           markdown_table(rows);
+           "bisector halves the opening, and is the default. It leaves the plane through the branch's axis by up to " +
+           fixed(off_meridian(pipes(600, 150)) / kDegree, 2) + "° (150 / 600).\n\n" + markdown_table(rows);
+}
+
+/// What the program says to pipes that don't meet all round.
+std::string refusal(double R, double r, double offset) {
+    try {
+        pipes(R, r, 90, offset);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
 }
 
 std::string general_position() {
@@ -91,8 +102,8 @@ std::string general_position() {
     struct Case {
         double R, r, angle_deg, offset;
     };
-    for (const Case& c :
-         {Case{600, 150, 90, 0}, Case{600, 150, 60, 80}, Case{300, 270, 45, 0}, Case{300, 100, 90, 195}}) {
+    for (const Case& c : {Case{600, 150, 90, 0}, Case{600, 150, 60, 80}, Case{200, 100, 60, 80}, Case{300, 270, 45, 0},
+                          Case{300, 100, 90, 195}}) {
         const SaddleCurve curve = pipes(c.R, c.r, c.angle_deg, c.offset);
         Range opening, bend;
         for (int k = 0; k < 36000; ++k) {
@@ -110,7 +121,9 @@ std::string general_position() {
     return "The paper's saddle is upright and central. Any angle and offset, and other headers, are one quadratic for "
            "each "
            "generator line of the branch; lengths by bisection in long double know none of its formulas.\n\n" +
-           markdown_table(rows);
+           markdown_table(rows) +
+           "Where that quadratic has no root there is no seam all round, and the program says: *" +
+           refusal(300, 100, 201) + "*.\n\n";
 }
 
 std::string groove_passes() {
@@ -137,8 +150,7 @@ std::string groove_passes() {
            "8 "
            "\\\n        --bead-area-mm2 20 --out out/passes\n\n"
            "A saddle that `seampath run` fitted to a scan is held against its drawing, dimension by dimension and "
-           "along "
-           "the seam, by\n\n"
+           "along the seam, where it is out of round included, by\n\n"
            "    build/seampath saddle --from out/part --header-radius-mm 60 --branch-radius-mm 30 --out "
            "out/as-built\n\n";
 }

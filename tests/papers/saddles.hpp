@@ -23,6 +23,17 @@ inline SaddleCurve pipes(double R, double r, double angle_deg = 90, double offse
     return saddle_of(dimensions);
 }
 
+/// How far the bisector of both walls leaves the plane through the branch's axis, rad.
+inline double off_meridian(const SaddleCurve& curve) {
+    double most = 0;
+    for (int k = 0; k < 3600; ++k) {
+        const SaddlePoint s = curve.at(2 * std::numbers::pi * k / 3600);
+        const Eigen::Vector3d sideways = s.n1.cross(curve.branch().axis);
+        most = std::max(most, std::asin(std::abs((s.n1 + s.n2).normalized().dot(sideways))));
+    }
+    return most;
+}
+
 struct NamedSaddle {
     std::string_view name;
     Cylinder branch;
