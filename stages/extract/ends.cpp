@@ -107,10 +107,23 @@ bool straight_end(const std::vector<TrackPoint>& way, bool front, double length,
     return true;
 }
 
-Tracker near_end(const Tracker& tracker, double to_end, double along) {
+bool unsure(const Tracker& tracker, const TrackPoint& point) {
+    return point.sigma > 2 * noise_of(tracker.scale_at(point.section));
+}
+
+std::optional<TrackPoint> measure_near_end(const Tracker& tracker, const Section& guess, double to_end) {
+    constexpr int kRounds = 3;
+    constexpr double kSurer = 0.7;  // of the other's sigma: as if it had seen twice as much
     Tracker longer = tracker;
-    longer.reach_further = std::max(0.0, along - to_end);
-    return longer;
+    longer.reach_further = std::max(0.0, tracker.window_at(guess).along - to_end);
+    auto point = longer.measure(guess, kRounds);
+    if (point && !unsure(tracker, *point) && longer.reach_further > 0) {
+        auto usual = tracker.measure(guess, kRounds);
+        if (usual && usual->sigma < kSurer * point->sigma) {
+            return usual;
+        }
+    }
+    return point;
 }
 
 void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front) {
@@ -147,7 +160,7 @@ void place_end(const Tracker& tracker, std::vector<TrackPoint>& way, bool front)
     const Section guess = carry_on(way, direction, rest);
     const double along = tracker.window_at(guess).along;
     const bool straight = straight_end(way, false, 2 * along, tracker.scale_at(guess).noise);
-    auto end = near_end(tracker, straight ? 0 : along, along).measure(guess, 3);
+    auto end = measure_near_end(tracker, guess, straight ? 0 : along);
     if (!end || end->sigma > 2 * last.sigma || (end->section.p - guess.p).norm() > 3 * last.sigma) {
         end = last;
         end->section = guess;

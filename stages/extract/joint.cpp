@@ -113,8 +113,8 @@ Solution solve(const Sums& sums, double registration, const Shifts& known) {
     return solution;
 }
 
-std::optional<SurfaceFit> refitted(const SurfaceFit& surface, const std::vector<Vector3d>& points, const Pool& pool,
-                                   double least_scale) {
+std::optional<SurfaceFit> refitted(const SurfaceFit& surface, const std::vector<Vector3d>& points,
+                                   const FlankPool& pool, double least_scale) {
     return std::holds_alternative<Plane>(surface.shape())
                ? fit_plane(points, pool.block, pool.normals.front(), least_scale)
                : fit_cylinder(points, pool.block, pool.places, pool.normals, least_scale);
@@ -128,7 +128,7 @@ std::array<JointFlank, 2> moved_back(const std::array<PooledFlank, 2>& pooled, c
         if (pooled[k].surface == nullptr) {
             continue;
         }
-        const Pool& pool = *pooled[k].pool;
+        const FlankPool& pool = *pooled[k].pool;
         for (std::size_t i = 0; i < pool.points.size(); ++i) {
             const auto shift = shifts.find(pool.view[i]);
             flanks[k].points.push_back(shift == shifts.end() ? pool.points[i]

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "stages/extract/pool.hpp"
+#include "stages/geometry/flank_pool.hpp"
 #include "stages/geometry/surface_fit.hpp"
 #include "stages/types.hpp"
 
@@ -10,7 +10,7 @@ namespace seampath::detail {
 
 /// One flank of a seam, with the surface nearest to its points; null where none was fitted.
 struct PooledFlank {
-    const Pool* pool;
+    const FlankPool* pool;
     const SurfaceFit* surface;
     bool explains;
 };

@@ -168,7 +168,7 @@ WallPoints wall_about(const std::vector<TrackPoint>& way, std::size_t i, double 
     WallPoints wall;
     double sum = 0;
     for (std::size_t j = i > about ? i - about : 0; j < std::min(way.size(), i + about + 1); ++j) {
-        for (const FlankSample& sample : way[j].slab[1]) {
+        for (const SlabPoint& sample : way[j].slab[1]) {
             sum += sample.u;
             wall.count += 1;
         }

@@ -26,12 +26,6 @@ std::vector<TrackPoint> at_equal_steps(const Track& track, double step) {
         });
 }
 
-// Hundreds of points that leave the seam less sure than two scan points do not see two surfaces: fits shrink to that in
-// the smooth valleys of bent or badly fused parts.
-bool unsure(const Tracker& tracker, const TrackPoint& point) {
-    return point.sigma > 2 * noise_of(tracker.scale_at(point.section));
-}
-
 // Each place measured anew. A bridged place stays as it was modelled unless both flanks turn out to be there after all.
 std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, const Tracker& tracker,
                                                       const std::vector<TrackPoint>& places, bool closed) {
@@ -63,7 +57,7 @@ std::vector<std::optional<TrackPoint>> measure_places(const Tracker& following, 
         if (straight_back) {
             to_end = std::min(to_end, static_cast<double>(places.size() - 1 - i) * tracker.step);
         }
-        measured[i] = near_end(tracker, to_end, along).measure(places[i].section, 3);
+        measured[i] = measure_near_end(tracker, places[i].section, to_end);
         if (!good(measured[i], places[i])) {
             measured[i] = following.measure(places[i].section, 3);  // a narrow place: what followed it can measure it
         }

@@ -19,7 +19,7 @@ using OffByView = std::map<std::uint32_t, Off>;
 OffByView off_by_view(const std::vector<TrackPoint>& way, std::size_t begin, std::size_t end, int k) {
     OffByView views;
     for (std::size_t i = begin; i < end; ++i) {
-        for (const FlankSample& sample : way[i].slab[k]) {
+        for (const SlabPoint& sample : way[i].slab[k]) {
             Off& off = views[sample.view];
             off.sum += sample.off;
             off.count += 1;
@@ -79,7 +79,7 @@ std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<T
 }
 
 // A shift b of a view changes the distances of its points by -n.b: the normal equations with that on their right side.
-ShiftOfSurface::ShiftOfSurface(const SurfaceFit& surface, const Pool& pool) : surface_(surface) {
+ShiftOfSurface::ShiftOfSurface(const SurfaceFit& surface, const FlankPool& pool) : surface_(surface) {
     const int n = surface.parameters();
     SurfaceFit::Matrix normal = SurfaceFit::Matrix::Zero(n, n);
     std::map<std::uint32_t, Influence> sums;

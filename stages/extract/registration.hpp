@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "stages/extract/pool.hpp"
+#include "stages/extract/track.hpp"
+#include "stages/geometry/flank_pool.hpp"
 #include "stages/geometry/surface_fit.hpp"
 
 /// What the views' registration against each other does to a seam. Each view is shifted by an error of its own, and no
@@ -29,7 +30,7 @@ std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<T
 /// The same for a surface fitted to all of the flank's points.
 class ShiftOfSurface {
 public:
-    ShiftOfSurface(const SurfaceFit& surface, const Pool& pool);
+    ShiftOfSurface(const SurfaceFit& surface, const FlankPool& pool);
     double at(const Eigen::Vector3d& p) const;
 
 private:

@@ -54,7 +54,7 @@ bool met(const std::vector<Track>& taken, const Section& place, double reach) {
 }
 
 // The scan's points on flank k of a fitted section, up to `half` mm to each side of it.
-std::vector<FlankSample> slab_of(const Tracker& tracker, const SectionFit& at, int k, double half) {
+std::vector<SlabPoint> slab_of(const Tracker& tracker, const SectionFit& at, int k, double half) {
     const Flank& flank = at.flank[k];
     const SectionFrame& f = at.frame;
     const SectionWindow& w = flank.window;
@@ -69,7 +69,7 @@ std::vector<FlankSample> slab_of(const Tracker& tracker, const SectionFit& at, i
             }
         }
     }
-    std::vector<FlankSample> slab;
+    std::vector<SlabPoint> slab;
     tracker.grid.for_cells_in_box(low, high, [&](std::size_t cell) {
         const auto points = tracker.grid.points(cell);
         for (std::size_t i = 0; i < points.size(); ++i) {

@@ -1,22 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "stages/extract/creases.hpp"
 #include "stages/geometry/section.hpp"
+#include "stages/geometry/slab.hpp"
 
 namespace seampath::detail {
-
-/// A scan point of a flank.
-struct FlankSample {
-    Eigen::Vector3f p;
-    float u;             ///< mm, how far from the seam it lies
-    float off;           ///< mm, off the surface that its window found
-    std::uint32_t view;  ///< of those that the scan was put together from
-};
 
 /// One measured place of a seam that is being followed.
 struct TrackPoint {
@@ -27,11 +19,11 @@ struct TrackPoint {
     double along = 0;            ///< mm, half length over which the flanks were fitted
     double away = 0;             ///< mm, how far from the seam the narrower flank is one smooth surface; not of a wall
     double rough = 0;            ///< residual scale of the rougher flank, in its noises
-    double flank_scale[2] = {0, 0};    ///< mm, robust 1-sigma of each flank's points about its surface
-    double flank_sigma[2] = {0, 0};    ///< mm, of the place across each flank
-    std::vector<FlankSample> slab[2];  ///< points of each flank within half a step of this place
-    double support[2] = {0, 0};        ///< points per mm^2 of each flank at this very place
-    bool modelled = false;             ///< no support here, but before and after
+    double flank_scale[2] = {0, 0};  ///< mm, robust 1-sigma of each flank's points about its surface
+    double flank_sigma[2] = {0, 0};  ///< mm, of the place across each flank
+    std::vector<SlabPoint> slab[2];  ///< points of each flank within half a step of this place
+    double support[2] = {0, 0};      ///< points per mm^2 of each flank at this very place
+    bool modelled = false;           ///< no support here, but before and after
 };
 
 struct Track {

@@ -9,14 +9,16 @@
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
-#include "stages/geometry/section.hpp"
 #include "stages/geometry/step_height.hpp"
 #include "stages/geometry/views.hpp"
 #include "stages/text.hpp"
+#include "stages/validate/flank_deviation.hpp"
 #include "stages/validate/groove_deviation.hpp"
 
 namespace seampath {
 namespace {
+
+using detail::Ground;
 
 constexpr double kNoiseTolerance = 3;    // tolerance by default, in sigmas of a single scan point
 constexpr double kLeastTolerance = 0.1;  // mm; tracking accuracy that arc welding asks of a path
@@ -58,43 +60,7 @@ ScanScale scale_along(const ScaleField& field, const ArcLength& arc, const Eigen
     return {quantile(spacing, 0.5), quantile(noise, 0.5), field.overall.correlation};
 }
 
-double signed_distance(const Flank& flank) {
-    const auto& c = flank.fit.coefficients();
-    const double du = c[1] / flank.window.away, ds = c[2] / flank.window.along;
-    return -c[0] / std::sqrt(1 + du * du + ds * ds);
-}
-
-/// The raw scan near the model.
-struct Ground {
-    const Eigen::Vector3d& origin;
-    const PointGrid& grid;
-    const std::vector<std::size_t>& views;
-    const ScanScale& scale;
-    const SectionWindow& window;
-};
-
 using Densities = std::array<double, 2>;  // of points on both surfaces at a sample, per mm^2; 0: not measured
-
-// By the line in which both flanks meet. A corner is measured inside out: from within the material it is concave. Of a
-// lap's wall, what lies between its foot and its top.
-Densities measure_flanks(const Ground& ground, const SeamModel& model, const std::optional<double>& wall,
-                         DeviationSample& sample) {
-    const double outwards = model.kind == JointKind::corner ? -1 : 1;
-    const FlankSample flanks = flanks_at(model, sample.station_mm);
-    const SectionWindows windows =
-        wall ? beside_wall(ground.scale, ground.window, *wall) : SectionWindows(ground.window, ground.window);
-    const auto fit = fit_section(ground.grid, ground.scale,
-                                 {sample.p - ground.origin, outwards * flanks.n1, outwards * flanks.n2}, windows);
-    if (!fit) {
-        return {0, 0};
-    }
-    sample.flank1_mm = outwards * signed_distance(fit->flank[0]);
-    sample.flank2_mm = outwards * signed_distance(fit->flank[1]);
-    sample.distance_mm = fit->shift;
-    sample.sigma_mm = fit->sigma;
-    sample.covered = true;
-    return {fit->flank[0].slab_points, fit->flank[1].slab_points};
-}
 
 // By the middle of the two top edges: how far the model lies above it stands for both flanks.
 Densities measure_butt(const Ground& ground, const SeamModel& model, const ArcLength& arc, DeviationSample& sample) {
@@ -223,16 +189,19 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     }
     if (model.kind == JointKind::v_groove) {
         detail::measure_groove_samples(model, arc, scan.origin_mm, grid, views, scale, result.samples, density);
-    } else {
-        const std::optional<double> wall =
-            model.kind == JointKind::lap ? wall_height(ground, model, arc) : std::nullopt;
+    } else if (model.kind == JointKind::butt) {
         parallel_for(count, 4, [&](std::size_t i) {
-            DeviationSample& sample = result.samples[i];
-            const auto seen = model.kind == JointKind::butt ? measure_butt(ground, model, arc, sample)
-                                                            : measure_flanks(ground, model, wall, sample);
+            const auto seen = measure_butt(ground, model, arc, result.samples[i]);
             density[0][i] = seen[0];
             density[1][i] = seen[1];
         });
+    } else {
+        const std::optional<double> wall =
+            model.kind == JointKind::lap ? wall_height(ground, model, arc) : std::nullopt;
+        const double noise = detail::measure_flank_samples(ground, model, wall, result.samples, density);
+        if (options.tolerance_mm == 0 && noise > 0) {
+            result.tolerance_mm = std::max(kLeastTolerance, kNoiseTolerance * std::min(noise, scale.noise));
+        }
     }
     std::vector<double> sigma;
     for (const DeviationSample& sample : result.samples) {

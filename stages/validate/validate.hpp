@@ -6,7 +6,7 @@
 namespace seampath {
 
 struct ValidateOptions {
-    double tolerance_mm = 0;  ///< 0: from the scan's noise
+    double tolerance_mm = 0;  ///< 0: from the noise of the points on the flanks
     double min_coverage = 0.9;
 };
 Fields describe(ValidateOptions&);

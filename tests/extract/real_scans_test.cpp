@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "stages/fit/fit.hpp"
+#include "stages/place/place.hpp"
 #include "stages/read/read.hpp"
+#include "stages/validate/validate.hpp"
 #include "tests/extract/support.hpp"
 
 /// Seams of real scans, against surfaces that a separate program fitted to hand-picked regions of the same scans by
@@ -114,6 +117,47 @@ INSTANTIATE_TEST_SUITE_P(DepthCamera, RealScans,
 
 // A bent tube alone: nothing to weld.
 INSTANTIATE_TEST_SUITE_P(WithoutSeam, RealScans, testing::Values(RealScan{"tube/coil_scan00.ply", {}, 0}));
+
+/// What the scan itself says of the fitted seams, longest first.
+struct Verdicts {
+    const char* file;
+    std::vector<bool> pass;
+    double most_mm;  ///< largest deviation of those that pass: about the sensor's noise
+};
+
+void PrintTo(const Verdicts& verdicts, std::ostream* out) {
+    *out << verdicts.file;
+}
+
+class RealVerdicts : public testing::TestWithParam<Verdicts> {};
+
+TEST_P(RealVerdicts, AreThoseOfTheSeamAndNotOfSingleWindows) {
+    const auto scan = real_scan(GetParam().file);
+    if (!scan) {
+        GTEST_SKIP() << "the real scans are not on this machine";
+    }
+    const std::vector<Seam> seams = extract(*scan, {}).seams;
+    ASSERT_EQ(seams.size(), GetParam().pass.size());
+    for (std::size_t i = 0; i < seams.size(); ++i) {
+        const Deviation deviation = validate(fit(seams[i], place(seams[i], {}), {}), *scan, {});
+        EXPECT_EQ(deviation.pass, GetParam().pass[i]) << "seam " << i << ": " << deviation.verdict;
+        if (GetParam().pass[i]) {
+            EXPECT_LT(deviation.max_mm, GetParam().most_mm) << "seam " << i << ": " << deviation.verdict;
+        }
+    }
+}
+
+// The post of the first scan is seen by fifty points on one side and by two layers of them on the other: no verdict.
+INSTANTIATE_TEST_SUITE_P(
+    Tee, RealVerdicts,
+    testing::Values(Verdicts{"tee_lidar/table_8in10in_tee_x0y24.pcd", {true, false}, 1.3},
+                    Verdicts{"tee_lidar/table_8in10in_tee_x4y24_45.pcd", {true, true}, 1.3},
+                    Verdicts{"tee_lidar/table_8in10in_tee_longclamps_x4y24_45.pcd", {true, true}, 1.3}));
+// Where the camera's waves leave a flank less sure than a third of its noise, no seam passes.
+INSTANTIATE_TEST_SUITE_P(DepthCamera, RealVerdicts,
+                         testing::Values(Verdicts{"rgbd/learn17.pcd", {false, true}, 1.6},
+                                         Verdicts{"rgbd/learn33.pcd", {true, false, true, true, false}, 1.6},
+                                         Verdicts{"rgbd/learn36.pcd", {true, true, true}, 1.6}));
 
 Vector3d mean_normal(const Seam& seam, bool second) {
     Vector3d sum = Vector3d::Zero();
