@@ -1,0 +1,131 @@
+#include <cmath>
+#include <numbers>
+
+#include "stages/stripe/lines.hpp"
+#include "stages/stripe/stripe.hpp"
+
+namespace seampath {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kLeastBend = 20 * std::numbers::pi / 180;  // of a corner; less is a bent sheet
+
+/// Turn from one piece to the next, rad: positive in a hollow.
+double turn(const ProfileLine& a, const ProfileLine& b) {
+    return std::atan2(a.direction.x() * b.direction.y() - a.direction.y() * b.direction.x(),
+                      a.direction.dot(b.direction));
+}
+
+/// 1-sigma of the place where two lines meet, from those across each of them there.
+double sigma_of_meeting(const ProfileLine& a, const ProfileLine& b, const Vector2d& p) {
+    const auto across = [&](const ProfileLine& line) {
+        const double lever = line.direction.dot(p - line.middle) / line.length;
+        return line.sigma * std::sqrt(1 + 12 * lever * lever);  // of a line through evenly spread points
+    };
+    return std::hypot(across(a), across(b)) / std::abs(std::sin(turn(a, b)));
+}
+
+ProfileFeature corner_of(const ProfileLine& a, const ProfileLine& b) {
+    const Vector2d p = meeting(a, b);
+    return {p, sigma_of_meeting(a, b, p), turn(a, b)};
+}
+
+/// The neighbouring pieces between which the profile bends most to one side, weighted by the shorter one's length: that
+/// much is known of the corner. Null where none bends enough.
+const ProfileLine* sharpest(const std::vector<ProfileLine>& lines, double side) {
+    const ProfileLine* best = nullptr;
+    double most = 0;
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+        const double bend = side * turn(lines[i], lines[i + 1]);
+        const double weight = bend * std::min(lines[i].length, lines[i + 1].length);
+        if (bend > kLeastBend && weight > most) {
+            most = weight;
+            best = &lines[i];
+        }
+    }
+    return best;
+}
+
+std::optional<ProfileFeature> corner_feature(const std::vector<ProfileLine>& lines, double side) {
+    const ProfileLine* first = sharpest(lines, side);
+    return first ? std::optional(corner_of(first[0], first[1])) : std::nullopt;
+}
+
+Vector2d foot_on(const ProfileLine& line, const Vector2d& p) {
+    return line.middle + line.direction.dot(p - line.middle) * line.direction;
+}
+
+ProfileFeature middle_of_ends(std::span<const Vector2d> points, const ProfileLine& a, const ProfileLine& b) {
+    const Vector2d from = foot_on(a, points[a.end - 1]), to = foot_on(b, points[b.begin]);
+    const double half_step = 0.5 * std::max(a.length / static_cast<double>(a.end - a.begin),
+                                            b.length / static_cast<double>(b.end - b.begin));
+    return {0.5 * (from + to), std::hypot(half_step, std::hypot(a.sigma, b.sigma)), turn(a, b)};
+}
+
+std::optional<ProfileFeature> groove_feature(std::span<const Vector2d> points, const std::vector<ProfileLine>& lines,
+                                             double band) {
+    const ProfileLine* first = sharpest(lines, 1);
+    if (!first) {
+        return std::nullopt;
+    }
+    const ProfileLine &a = first[0], &b = first[1];
+    const bool apart = (points[b.begin] - points[a.end - 1]).norm() > 3 * band;
+    return apart ? middle_of_ends(points, a, b) : corner_of(a, b);
+}
+
+/// The two neighbours that run side by side: with the largest step between them for a lap joint, the widest gap for a
+/// butt joint. Null where there are none.
+const ProfileLine* widest_apart(std::span<const Vector2d> points, const std::vector<ProfileLine>& lines, bool step,
+                                double band) {
+    const ProfileLine* best = nullptr;
+    double most = band;
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+        const ProfileLine &a = lines[i], &b = lines[i + 1];
+        const Vector2d gap = points[b.begin] - points[a.end - 1];
+        const double apart = step ? std::abs(a.height(points[b.begin])) : gap.dot(a.direction);
+        if (std::abs(turn(a, b)) < kLeastBend && apart > most) {
+            most = apart;
+            best = &a;
+        }
+    }
+    return best;
+}
+
+/// The upper sheet's end, straight down on the lower sheet.
+std::optional<ProfileFeature> lap_feature(std::span<const Vector2d> points, const std::vector<ProfileLine>& lines,
+                                          double band) {
+    const ProfileLine* first = widest_apart(points, lines, true, band);
+    if (!first) {
+        return corner_feature(lines, 1);  // the step's wall is seen
+    }
+    const ProfileLine &a = first[0], &b = first[1];
+    const bool up = a.height(points[b.begin]) > 0;
+    const ProfileLine& lower = up ? a : b;
+    const Vector2d foot = foot_on(lower, up ? points[b.begin] : points[a.end - 1]);
+    const double half_step = 0.5 * lower.length / static_cast<double>(lower.end - lower.begin);
+    return ProfileFeature{foot, std::hypot(half_step, lower.sigma), turn(a, b)};
+}
+
+}  // namespace
+
+std::optional<ProfileFeature> find_feature(std::span<const Vector2d> points, const ProfileScale& scale,
+                                           JointKind kind) {
+    const std::vector<ProfileLine> lines = straight_pieces(points, scale.sigma, scale.correlated, scale.band);
+    switch (kind) {
+        case JointKind::lap:
+            return lap_feature(points, lines, scale.band);
+        case JointKind::butt: {
+            const ProfileLine* first = widest_apart(points, lines, false, scale.band);
+            return first ? std::optional(middle_of_ends(points, first[0], first[1])) : std::nullopt;
+        }
+        case JointKind::v_groove:
+            return groove_feature(points, lines, scale.band);
+        case JointKind::corner:
+            return corner_feature(lines, -1);
+        default:
+            return corner_feature(lines, 1);
+    }
+}
+
+}  // namespace seampath
