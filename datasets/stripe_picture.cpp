@@ -23,6 +23,17 @@ double squared_distance(const Vector2d& p, const Vector2d& a, const Vector2d& b)
     return (p - a - x * along).squaredNorm();
 }
 
+/// Nearly normal, mean 0, variance 1: the sum of four uniform numbers (Irwin and Hall), which one hash gives. A picture
+/// has many pixels.
+double quick_normal(std::uint64_t bits) {
+    constexpr double kSigma = 0.57735026918962576;  // sqrt(4 / 12)
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+        sum += (static_cast<double>((bits >> (16 * i)) & 0xffff) + 0.5) * 0x1p-16 - 0.5;
+    }
+    return sum / kSigma;
+}
+
 /// One number a pixel.
 class Plane2d {
 public:
@@ -76,15 +87,18 @@ GreyImage draw_stripes(const StripePicture& picture, const StripeNoise& noise, s
             const auto i = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(picture.width) +
                            static_cast<std::uint64_t>(c);
             const auto grain = static_cast<std::uint64_t>(row / 2) * 65536 + static_cast<std::uint64_t>(c / 2);
-            const auto light = [&](double d2) { return d2 < INFINITY ? std::exp(-0.5 * d2 / (sigma * sigma)) : 0; };
+            const auto light = [&](double d2) {
+                return d2 < INFINITY ? portable::exp(-0.5 * d2 / (sigma * sigma)) : 0;
+            };
             double lit = light(stripe.at(c, row));
             lit += noise.halo > 0 ? noise.halo * light(halo.at(c, row)) : 0;
-            lit *= noise.speckle > 0 && lit > 0 ? std::max(0.0, 1 + noise.speckle * grains.normal(grain)) : 1;
+            lit *=
+                noise.speckle > 0 && lit > 0 ? std::max(0.0, 1 + noise.speckle * quick_normal(grains.bits(grain))) : 1;
             lit *= columns.uniform(static_cast<std::uint64_t>(c / 8)) < noise.dropout ? 0 : 1;
             const double far = (Vector2d(c, row) - noise.glow_at).norm() / noise.glow_radius_px;
-            const double glow = noise.glow > 0 ? noise.glow * std::exp(-0.5 * far * far) : 0;
+            const double glow = noise.glow > 0 ? noise.glow * portable::exp(-0.5 * far * far) : 0;
             const double grey = noise.exposure * (picture.ground + picture.peak * lit + glow);
-            const double noisy = grey + noise.sigma * pixels.normal(i);
+            const double noisy = grey + noise.sigma * quick_normal(pixels.bits(i));
             image.value.push_back(static_cast<float>(std::clamp(std::floor(noisy + 0.5), 0.0, 255.0)));
         }
     }

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <numbers>
 
+#include "stages/geometry/robust.hpp"
 #include "stages/stripe/lines.hpp"
 #include "stages/stripe/stripe.hpp"
 
@@ -8,14 +8,6 @@ namespace seampath {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kLeastBend = 20 * std::numbers::pi / 180;  // of a corner; less is a bent sheet
-
-/// Turn from one piece to the next, rad: positive in a hollow.
-double turn(const ProfileLine& a, const ProfileLine& b) {
-    return std::atan2(a.direction.x() * b.direction.y() - a.direction.y() * b.direction.x(),
-                      a.direction.dot(b.direction));
-}
 
 /// 1-sigma of the place where two lines meet, from those across each of them there.
 double sigma_of_meeting(const ProfileLine& a, const ProfileLine& b, const Vector2d& p) {
@@ -92,16 +84,29 @@ const ProfileLine* widest_apart(std::span<const Vector2d> points, const std::vec
     return best;
 }
 
-/// The upper sheet's end, straight down on the lower sheet.
+/// The foot of the step, on the lower sheet: below what is seen of the step's wall clear of both sheets, or else below
+/// the upper sheet's end.
 std::optional<ProfileFeature> lap_feature(std::span<const Vector2d> points, const std::vector<ProfileLine>& lines,
-                                          double band) {
-    const ProfileLine* first = widest_apart(points, lines, true, band);
+                                          const ProfileScale& scale) {
+    const ProfileLine* first = widest_apart(points, lines, true, scale.band);
     if (!first) {
-        return corner_feature(lines, 1);  // the step's wall is seen
+        return corner_feature(lines, 1);  // the step's wall is a piece of its own
     }
     const ProfileLine &a = first[0], &b = first[1];
     const bool up = a.height(points[b.begin]) > 0;
-    const ProfileLine& lower = up ? a : b;
+    const ProfileLine &lower = up ? a : b, &upper = up ? b : a;
+    std::vector<double> wall;  // along the lower sheet
+    for (std::size_t i = a.end; i < b.begin; ++i) {
+        if (lower.height(points[i]) > scale.band && upper.height(points[i]) < -scale.band) {
+            wall.push_back(lower.direction.dot(points[i] - lower.middle));
+        }
+    }
+    if (!wall.empty()) {
+        const auto n = static_cast<double>(wall.size());
+        const Vector2d foot = lower.middle + quantile(wall, 0.5) * lower.direction;
+        const double across = scale.sigma * std::sqrt(std::max(1.0, scale.correlated / n));
+        return ProfileFeature{foot, std::hypot(across, lower.sigma), turn(a, b)};
+    }
     const Vector2d foot = foot_on(lower, up ? points[b.begin] : points[a.end - 1]);
     const double half_step = 0.5 * lower.length / static_cast<double>(lower.end - lower.begin);
     return ProfileFeature{foot, std::hypot(half_step, lower.sigma), turn(a, b)};
@@ -111,10 +116,10 @@ std::optional<ProfileFeature> lap_feature(std::span<const Vector2d> points, cons
 
 std::optional<ProfileFeature> find_feature(std::span<const Vector2d> points, const ProfileScale& scale,
                                            JointKind kind) {
-    const std::vector<ProfileLine> lines = straight_pieces(points, scale.sigma, scale.correlated, scale.band);
+    const std::vector<ProfileLine> lines = straight_pieces(points, scale);
     switch (kind) {
         case JointKind::lap:
-            return lap_feature(points, lines, scale.band);
+            return lap_feature(points, lines, scale);
         case JointKind::butt: {
             const ProfileLine* first = widest_apart(points, lines, false, scale.band);
             return first ? std::optional(middle_of_ends(points, first[0], first[1])) : std::nullopt;

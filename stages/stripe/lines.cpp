@@ -91,15 +91,15 @@ std::vector<std::size_t> best_cuts(std::span<const Vector2d> points, double vari
     return {chosen.rbegin(), chosen.rend()};
 }
 
-/// The robust line of points [begin, end) but those within `band` of either end; of no length when too few are left.
-ProfileLine robust_line(std::span<const Vector2d> points, std::size_t begin, std::size_t end, double sigma,
-                        double correlated, double band) {
+/// The robust line of points [begin, end) but those within the band of either end; of no length when too few are left.
+ProfileLine robust_line(std::span<const Vector2d> points, std::size_t begin, std::size_t end,
+                        const ProfileScale& profile) {
     constexpr std::size_t kFewest = 8;
     constexpr double kTukeyLimit = 4.685;
     const Vector2d first = points[begin], last = points[end - 1];
     std::vector<Vector2d> inner;
     for (std::size_t i = begin; i < end; ++i) {
-        if ((points[i] - first).norm() > band && (points[i] - last).norm() > band) {
+        if ((points[i] - first).norm() > profile.band && (points[i] - last).norm() > profile.band) {
             inner.push_back(points[i]);
         }
     }
@@ -120,7 +120,7 @@ ProfileLine robust_line(std::span<const Vector2d> points, std::size_t begin, std
             distance[i] = std::abs(line.height(inner[i]));
         }
         std::vector<double> sorted = distance;
-        const double scale = std::max(sigma, 1.4826 * quantile(sorted, 0.5));
+        const double scale = std::max(profile.sigma, 1.4826 * quantile(sorted, 0.5));
         for (std::size_t i = 0; i < inner.size(); ++i) {
             const double u = distance[i] / (kTukeyLimit * scale);
             weight[i] = u < 1 ? (1 - u * u) * (1 - u * u) : 0;
@@ -129,24 +129,23 @@ ProfileLine robust_line(std::span<const Vector2d> points, std::size_t begin, std
     line.direction *= line.direction.dot(last - first) < 0 ? -1 : 1;
     line.begin = begin, line.end = end;
     line.length = line.direction.dot(last - first);
-    line.sigma = sigma * std::sqrt(std::max(1.0, correlated) / std::max(1.0, sums.n));
+    line.sigma = profile.sigma * std::sqrt(std::max(1.0, profile.correlated) / std::max(1.0, sums.n));
     return line;
 }
 
 }  // namespace
 
-std::vector<ProfileLine> straight_pieces(std::span<const Vector2d> points, double sigma, double correlated,
-                                         double band) {
+std::vector<ProfileLine> straight_pieces(std::span<const Vector2d> points, const ProfileScale& scale) {
     if (points.size() < 2) {
         return {};
     }
     // A cut adds a place and two numbers of a line. Errors that neighbours share count for so many more.
     const double charge = 3 * std::log(static_cast<double>(points.size()));
-    const double variance = sigma * sigma * std::max(1.0, correlated);
+    const double variance = scale.sigma * scale.sigma * std::max(1.0, scale.correlated);
     const std::vector<std::size_t> cuts = best_cuts(points, variance, charge);
     std::vector<ProfileLine> lines;
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-        const ProfileLine line = robust_line(points, cuts[i], cuts[i + 1], sigma, correlated, band);
+        const ProfileLine line = robust_line(points, cuts[i], cuts[i + 1], scale);
         if (line.length > 0) {
             lines.push_back(line);
         }
@@ -157,6 +156,11 @@ std::vector<ProfileLine> straight_pieces(std::span<const Vector2d> points, doubl
 Vector2d meeting(const ProfileLine& a, const ProfileLine& b) {
     const Vector2d apart = b.middle - a.middle, &u = a.direction, &v = b.direction;
     return a.middle + (apart.x() * v.y() - apart.y() * v.x()) / (u.x() * v.y() - u.y() * v.x()) * u;
+}
+
+double turn(const ProfileLine& a, const ProfileLine& b) {
+    return std::atan2(a.direction.x() * b.direction.y() - a.direction.y() * b.direction.x(),
+                      a.direction.dot(b.direction));
 }
 
 }  // namespace seampath

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
+#include "stages/geometry/camera.hpp"
 #include "stages/geometry/grey_image.hpp"
 #include "stages/types.hpp"
 
@@ -62,5 +64,39 @@ struct ProfileFeature {
 /// step; butt: the middle of the two edges. Empty where the profile does not show such a joint.
 std::optional<ProfileFeature> find_feature(std::span<const Eigen::Vector2d> points, const ProfileScale& scale,
                                            JointKind kind);
+
+/// The plane that a laser lights: n p = distance for its points p, in the camera's frame, mm.
+struct LaserPlane {
+    Eigen::Vector3d normal{0, 0, 1};  ///< unit
+    double distance_mm = 0;           ///< of the camera from it; not 0
+};
+
+/// A stripe in space. One entry a point, from left to right in the picture.
+struct Profile {
+    std::vector<Eigen::Vector3d> points;  ///< mm, camera's frame
+    std::vector<double> sigma_mm;         ///< 1-sigma of each, across the stripe in the laser's plane
+    std::vector<int> column;              ///< of the picture, ascending
+    ProfileScale scale;                   ///< mm
+};
+
+/// Where the rays of a stripe's points meet the laser's plane; those that do not meet it before the camera are left
+/// out.
+Profile triangulate(const Stripe& stripe, const CameraModel& camera, const LaserPlane& plane);
+
+/// find_feature() in the laser's plane, seen from the camera.
+struct ProfileSeamPoint {
+    Eigen::Vector3d p;  ///< mm, camera's frame
+    double sigma_mm = 0;
+};
+std::optional<ProfileSeamPoint> find_seam_point(const Profile& profile, const LaserPlane& plane, JointKind kind);
+
+/// Profiles as one scan in the base's frame: a raster of `columns` a row and a row a profile. Profiles may be empty,
+/// but not all of them.
+struct StripeScan {
+    Scan scan;
+    std::vector<float> sigma_mm;  ///< one a point of the scan
+};
+StripeScan scan_of_profiles(std::span<const Profile> profiles, std::span<const Eigen::Isometry3d> base_from_camera,
+                            int columns);
 
 }  // namespace seampath
