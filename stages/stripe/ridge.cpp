@@ -3,95 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "stages/geometry/robust.hpp"
+#include "stages/stripe/steger.hpp"
 
 namespace seampath {
 namespace {
 
 using Eigen::Vector2d;
 
-/// A Gaussian and its derivatives at whole pixels from -radius to radius.
-struct RidgeKernel {
-    double sigma = 1;
-    int radius = 0;
-    std::vector<double> g, g1, g2;
-};
-
-RidgeKernel make_kernel(double sigma) {
-    RidgeKernel k{sigma, static_cast<int>(std::ceil(3.5 * sigma)), {}, {}, {}};
-    const double scale = 1 / (std::sqrt(2 * std::numbers::pi) * sigma), s2 = sigma * sigma;
-    for (int i = -k.radius; i <= k.radius; ++i) {
-        const double g = scale * std::exp(-0.5 * i * i / s2);
-        k.g.push_back(g);
-        k.g1.push_back(i / s2 * g);  // of a convolution: the sign is that of the pixel's offset
-        k.g2.push_back((i * i / s2 - 1) / s2 * g);
-    }
-    // Cut off and sampled, the second derivative would see a ridge in even grey.
-    double sum = 0;
-    for (const double value : k.g2) {
-        sum += value;
-    }
-    for (double& value : k.g2) {
-        value -= sum / static_cast<double>(k.g2.size());
-    }
-    return k;
-}
-
-struct Derivatives {
-    double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-};
-
-Derivatives derivatives(const GreyImage& image, const RidgeKernel& k, int column, int row) {
-    Derivatives d;
-    for (int j = -k.radius; j <= k.radius; ++j) {
-        double s = 0, s1 = 0, s2 = 0;
-        const auto add = [&](int i, double value) {
-            const auto n = static_cast<std::size_t>(i + k.radius);
-            s += k.g[n] * value, s1 += k.g1[n] * value, s2 += k.g2[n] * value;
-        };
-        if (column >= k.radius && column + k.radius < image.width) {
-            const int r = std::clamp(row + j, 0, image.height - 1);
-            const float* line = &image.value[static_cast<std::size_t>(r) * static_cast<std::size_t>(image.width) +
-                                             static_cast<std::size_t>(column - k.radius)];
-            for (int i = -k.radius; i <= k.radius; ++i) {
-                add(i, line[i + k.radius]);
-            }
-        } else {
-            for (int i = -k.radius; i <= k.radius; ++i) {
-                add(i, image.clamped(column + i, row + j));
-            }
-        }
-        const auto n = static_cast<std::size_t>(j + k.radius);
-        d.x += k.g[n] * s1, d.xx += k.g[n] * s2;
-        d.y += k.g1[n] * s, d.xy += k.g1[n] * s1;
-        d.yy += k.g2[n] * s;
-    }
-    return d;
-}
-
-/// Unit vector of the Hessian's most negative eigenvalue, pointing down, and that eigenvalue.
-struct Across {
-    Vector2d n;
-    double curvature;
-};
-
-Across across(const Derivatives& d) {
-    const double half = 0.5 * (d.xx - d.yy), root = std::hypot(half, d.xy);
-    const double low = 0.5 * (d.xx + d.yy) - root;
-    Vector2d n = half < 0 ? Vector2d(root - half, -d.xy) : Vector2d(d.xy, -(root + half));
-    n = root > 0 ? Vector2d(n.normalized()) : Vector2d(0, 1);
-    return {n.y() < 0 ? Vector2d(-n) : n, low};
-}
-
 /// The stripe about one link of a chain.
 struct LinkShape {
-    double sigma = 0;       ///< of the Gaussian that the stripe is like, px
-    Vector2d normal{0, 1};  ///< from the chain's course
-    double background = 0;  ///< slope of the ground across it, grey values a px
-    bool drowned = false;   ///< the ground on either side is cut off at white: no middle can be told
+    double sigma = 0;  ///< of the Gaussian that the stripe is like, px
+    GroundSlope ground;
+    bool drowned = false;  ///< the ground on either side is cut off at white: no middle can be told
 };
 
 /// Links about one of them, which a mean is taken over.
@@ -114,16 +40,16 @@ LinkShape shape_at(const GreyImage& image, const std::vector<ChainLink>& links, 
     const ChainLink &first = links[window.begin], &last = links[window.end - 1];
     const double slope = (last.bar.y - first.bar.y) / std::max(1.0, static_cast<double>(last.column - first.column));
     LinkShape shape;
-    shape.normal = Vector2d(-slope, 1).normalized();
-    const double width = quantile(heights, 0.5) * shape.normal.y();
+    shape.ground.normal = Vector2d(-slope, 1).normalized();
+    const double width = quantile(heights, 0.5) * shape.ground.normal.y();
     shape.sigma = kSigmaPerHeight * width;
-    const Vector2d middle(links[i].column, links[i].bar.y), away = 2 * width * shape.normal;
+    const Vector2d middle(links[i].column, links[i].bar.y), away = 2 * width * shape.ground.normal;
     const auto grey = [&](const Vector2d& p) {
         return static_cast<double>(
             image.clamped(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))));
     };
     const double above = grey(middle - away), below = grey(middle + away);
-    shape.background = (below - above) / (4 * width);
+    shape.ground.slope = (below - above) / (4 * width);
     shape.drowned = above >= image.white || below >= image.white;
     return shape;
 }
@@ -133,52 +59,14 @@ std::vector<LinkShape> shapes_along(const GreyImage& image, const Chain& chain) 
     std::vector<double> sums{0};  // of the ground's slopes, up to each link
     for (std::size_t i = 0; i < chain.links.size(); ++i) {
         shapes.push_back(shape_at(image, chain.links, i));
-        sums.push_back(sums.back() + shapes.back().background);
+        sums.push_back(sums.back() + shapes.back().ground.slope);
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const LinkWindow window(i, shapes.size());
-        shapes[i].background = (sums[window.end] - sums[window.begin]) / static_cast<double>(window.end - window.begin);
+        shapes[i].ground.slope =
+            (sums[window.end] - sums[window.begin]) / static_cast<double>(window.end - window.begin);
     }
     return shapes;
-}
-
-/// The point of the ridge nearest to a pixel of the column, begun at a row.
-std::optional<StripePoint> ridge_point(const GreyImage& image, const RidgeKernel& k, const ChainLink& link,
-                                       const LinkShape& shape, double noise) {
-    constexpr double kHalfPixel = 0.5 + 1e-9;
-    constexpr double kNearest = 0.75;   // px: where either neighbour of the middle points to the other
-    constexpr double kSteepest = 0.42;  // of the normal's y: a stripe at 65 degrees
-    const int tries = 2 + static_cast<int>(k.sigma);
-    // 1-sigma of the curvature in white noise: the root of the integrals of g''^2 and g^2, 3/(8 sqrt(pi) s^5) and
-    // 1/(2 sqrt(pi) s); and of the slope, 1/(4 sqrt(pi) s^3).
-    const double s2 = k.sigma * k.sigma;
-    const double curvature_noise = noise * std::sqrt(3 / (16 * std::numbers::pi)) / (s2 * k.sigma);
-    const double slope_noise = noise / (std::sqrt(8 * std::numbers::pi) * s2);
-    int row = std::clamp(static_cast<int>(std::lround(link.bar.y)), 0, image.height - 1);
-    double nearest = kNearest;
-    std::optional<StripePoint> best;
-    for (int i = 0; i < tries; ++i) {
-        const Derivatives d = derivatives(image, k, link.column, row);
-        const auto [n, curvature] = across(d);
-        if (!(curvature < -4 * curvature_noise) || n.y() < kSteepest) {
-            return std::nullopt;
-        }
-        const double ground = shape.background * n.dot(shape.normal);
-        const double t = -(d.x * n.x() + d.y * n.y() - ground) / curvature;
-        const Vector2d step = t * n;
-        const double off = step.cwiseAbs().maxCoeff();
-        if (off < nearest) {
-            nearest = off;
-            best = StripePoint{Vector2d(link.column, row) + step, n, 0, -slope_noise / curvature};
-        }
-        if (off <= kHalfPixel) {
-            break;
-        }
-        // Along the column, to where the ridge's line crosses it; a far jump is a wrong one.
-        const int move = static_cast<int>(std::lround(std::clamp(t / n.y(), -k.sigma - 1, k.sigma + 1)));
-        row = std::clamp(row + (move ? move : (t > 0 ? 1 : -1)), 0, image.height - 1);
-    }
-    return best;
 }
 
 /// How many times more the points scatter along the stripe than white noise explains, at least 1: speckle is part of
@@ -197,32 +85,104 @@ double extra_scatter(const std::vector<StripePoint>& points, double widest_sigma
     return ratios.size() < 10 ? 1 : std::max(1.0, kSigmaOfMedian * quantile(ratios, 0.5));
 }
 
+/// The ridge of one line, column by column.
+class RidgeLine {
+public:
+    RidgeLine(const GreyImage& image, double noise)
+        : image_(image), noise_(noise), at_(static_cast<std::size_t>(image.width)) {}
+
+    void find(const ChainLink& link, const LinkShape& shape) {
+        if (!shape.drowned) {
+            at(link.column) = look(link.column, link.bar.y, shape);
+        }
+    }
+
+    /// Follows the ridge on into the columns beside those that have a point: bars end before a crossing, where they do
+    /// not stand free, the ridge does not. It goes on where it is at least a third as sharp as at the end, and straight
+    /// ahead.
+    void grow(int end, int step, const LinkShape& shape) {
+        const auto slope = slope_at(end, step);
+        for (int c = end + step; slope && has(c - step) && c >= 0 && c < image_.width && !at(c); c += step) {
+            const double ahead = at(end)->p.y() + *slope * (c - at(end)->p.x());
+            const auto point = look(c, ahead, shape);
+            if (point && point->sigma_px < 3 * at(end)->sigma_px &&
+                std::abs(point->p.y() - ahead - *slope * (point->p.x() - c)) < shape.sigma) {
+                at(c) = point;
+            }
+        }
+    }
+
+    bool has(int column) const {
+        return column >= 0 && column < image_.width && at_[static_cast<std::size_t>(column)].has_value();
+    }
+
+    std::vector<StripePoint> points() const {
+        std::vector<StripePoint> all;
+        for (const auto& point : at_) {
+            if (point && (all.empty() || point->p.x() > all.back().p.x())) {
+                all.push_back(*point);
+            }
+        }
+        return all;
+    }
+
+private:
+    std::optional<StripePoint>& at(int column) { return at_[static_cast<std::size_t>(column)]; }
+
+    std::optional<StripePoint> look(int column, double y, const LinkShape& shape) {
+        constexpr double kFwhm = 2.355;       // a Gaussian's width at half height over its 1-sigma
+        constexpr double kLeastSigma = 0.85;  // below, derivatives at whole pixels are not those of the picture
+        constexpr double kGrid = 0.25;        // px, of sigmas: one kernel serves many points
+        const int index = static_cast<int>(std::lround(std::max(kLeastSigma, shape.sigma) / kGrid));
+        auto kernel = kernels_.find(index);
+        if (kernel == kernels_.end()) {
+            kernel = kernels_.emplace(index, make_kernel(index * kGrid)).first;
+        }
+        auto point = ridge_point(image_, kernel->second, column, y, shape.ground, noise_);
+        if (point) {
+            point->width_px = kFwhm * shape.sigma;
+        }
+        return point;
+    }
+
+    /// Rows a column before an end, from the points there; empty when there are too few.
+    std::optional<double> slope_at(int end, int step) const {
+        constexpr int kReach = 12;
+        constexpr double kFewest = 6;
+        double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+        for (int c = end; std::abs(c - end) <= kReach && has(c); c -= step) {
+            const Vector2d& p = at_[static_cast<std::size_t>(c)]->p;
+            const double u = p.x() - end;
+            ++n, x += u, y += p.y(), xx += u * u, xy += u * p.y();
+        }
+        return n < kFewest ? std::nullopt : std::optional((n * xy - x * y) / (n * xx - x * x));
+    }
+
+    const GreyImage& image_;
+    double noise_;
+    std::vector<std::optional<StripePoint>> at_;
+    std::map<int, RidgeKernel> kernels_;
+};
+
 }  // namespace
 
 Stripe follow_ridge(const GreyImage& image, const Chain& chain, double noise) {
-    constexpr double kFwhm = 2.355;       // a Gaussian's width at half height over its 1-sigma
-    constexpr double kLeastSigma = 0.85;  // below, derivatives at whole pixels are not those of the picture
-    constexpr double kGrid = 0.25;        // px, of sigmas: one kernel serves many points
-    Stripe stripe;
-    stripe.contrast = median_of(chain, &Bar::contrast);
-    std::map<int, RidgeKernel> kernels;
     const std::vector<LinkShape> shapes = shapes_along(image, chain);
+    RidgeLine line(image, noise);
     double widest = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        const double sigma = std::max(kLeastSigma, shapes[i].sigma);
-        const int index = static_cast<int>(std::lround(sigma / kGrid));
-        auto kernel = kernels.find(index);
-        if (kernel == kernels.end()) {
-            kernel = kernels.emplace(index, make_kernel(index * kGrid)).first;
-        }
-        auto point = ridge_point(image, kernel->second, chain.links[i], shapes[i], noise);
-        const bool follows = point && (stripe.points.empty() || point->p.x() > stripe.points.back().p.x());
-        if (follows && !shapes[i].drowned) {
-            point->width_px = kFwhm * shapes[i].sigma;
-            stripe.points.push_back(*point);
-            widest = std::max(widest, sigma);
+        line.find(chain.links[i], shapes[i]);
+        widest = std::max(widest, shapes[i].sigma);
+    }
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        for (const int step : {-1, 1}) {
+            const int end = chain.links[i].column;
+            if (line.has(end) && !line.has(end + step)) {
+                line.grow(end, step, shapes[i]);
+            }
         }
     }
+    Stripe stripe{line.points(), median_of(chain, &Bar::contrast)};
     const double extra = extra_scatter(stripe.points, widest);
     for (StripePoint& point : stripe.points) {
         point.sigma_px *= extra;
