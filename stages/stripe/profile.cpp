@@ -93,7 +93,8 @@ std::optional<ProfileSeamPoint> find_seam_point(const Profile& profile, const La
         return std::nullopt;
     }
     const PlaneAxes axes = axes_of(profile, plane);
-    const auto feature = find_feature(points_in(axes, profile), profile.scale, kind);
+    const std::vector<Vector2d> points = points_in(axes, profile);
+    const auto feature = find_feature({points, profile.sigma_mm}, profile.scale, kind);
     return feature ? std::optional(ProfileSeamPoint{axes.origin + feature->p.x() * axes.x + feature->p.y() * axes.y,
                                                     feature->sigma})
                    : std::nullopt;

@@ -57,13 +57,19 @@ struct ProfileFeature {
     double bend_rad = 0;  ///< between the flanks' directions
 };
 
-/// The seam's place in one profile: its points in order of x, y out of the material. Never the lowest point: straight
-/// flanks are fitted and carried on to where they meet (M. Cibicik, L. Tingelstad, O. Egeland, Sensors 21(14) 4791,
-/// 2021). Fillet, corner and saddle: where the two meet between which the profile bends most, hollow or outwards;
-/// V-groove: where the bevels meet, or the middle of their lower ends when these stand apart; lap: the foot of the
-/// step; butt: the middle of the two edges. Empty where the profile does not show such a joint.
-std::optional<ProfileFeature> find_feature(std::span<const Eigen::Vector2d> points, const ProfileScale& scale,
-                                           JointKind kind);
+/// Points of a profile in order of x, y out of the material, and the 1-sigma of each.
+struct ProfilePoints {
+    std::span<const Eigen::Vector2d> p;
+    std::span<const double> sigma;
+};
+
+/// The seam's place in one profile. Never the lowest point: straight flanks are fitted and carried on to where they
+/// meet (M. Cibicik, L. Tingelstad, O. Egeland, Sensors 21(14) 4791, 2021). Fillet, corner and saddle: where the two
+/// meet between which the profile bends most, hollow or outwards; V-groove: where the bevels meet, or the middle of
+/// their lower ends when these stand apart; lap: the foot of the step; butt: the middle of the two edges. Where a flank
+/// ends, half of the light of its stripe is left, and with it half of the ridge's sharpness, to which the points'
+/// sigmas are inverse. Empty where the profile does not show such a joint.
+std::optional<ProfileFeature> find_feature(const ProfilePoints& points, const ProfileScale& scale, JointKind kind);
 
 /// The plane that a laser lights: n p = distance for its points p, in the camera's frame, mm.
 struct LaserPlane {

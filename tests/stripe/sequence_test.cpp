@@ -129,6 +129,15 @@ TEST(StripeSequence, VGroove) {
     expect_seam_profile_by_profile(Sequence(scene, rig), JointKind::v_groove);
 }
 
+TEST(StripeSequence, Butt) {
+    SceneOptions scene;
+    scene.kind = SceneKind::butt;
+    scene.gap_mm = 2;
+    StripeRig rig = half_of_the_way();
+    rig.tilt_deg = 0;
+    expect_seam_profile_by_profile(Sequence(scene, rig), JointKind::butt);
+}
+
 // Every point of the scan is as far from the true surfaces as its sigma says.
 TEST(StripeSequence, SigmaOfEachPointIsItsError) {
     SceneOptions scene;

@@ -154,10 +154,12 @@ TEST(Stripe, RootOfAVFollowsFromItsFlanks) {
         const auto stripes = find_stripes(draw_stripes(picture, {}, seed), 1);
         ASSERT_EQ(stripes.size(), 1U);
         std::vector<Vector2d> points;
+        std::vector<double> sigmas;
         for (const StripePoint& point : stripes[0].points) {
             points.emplace_back(point.p.x(), -point.p.y());
+            sigmas.push_back(point.sigma_px);
         }
-        const auto feature = find_feature(points, {0.05, 3, 6}, JointKind::v_groove);
+        const auto feature = find_feature({points, sigmas}, {0.05, 3, 6}, JointKind::v_groove);
         ASSERT_TRUE(feature);
         squares += (Vector2d(feature->p.x(), -feature->p.y()) - root).squaredNorm();
     }
