@@ -160,6 +160,14 @@ TEST(StripeSequence, SigmaOfEachPointIsItsError) {
     EXPECT_LT(std::sqrt(squares / count), 1.5);
 }
 
+// By hand: r^2 = 0.05, 1 + k1 r^2 + k2 r^4 + k3 r^6 = 0.9877525.
+TEST(Camera, PixelsAreThoseOfBrownsModel) {
+    const CameraModel camera{640, 480, {1000, 1000}, {0, 0}, {-0.25, 0.1, 0.001, -0.002, 0.02}};
+    const Vector2d pixel = pixel_of(camera, {0.1, 0.2, 1});
+    EXPECT_NEAR(pixel.x(), 98.67525, 1e-9);
+    EXPECT_NEAR(pixel.y(), 197.6005, 1e-9);
+}
+
 TEST(Camera, DirectionsUndoTheLens) {
     const CameraModel camera{640, 480, {800, 810}, {322, 236}, {-0.25, 0.1, 0.001, -0.002, 0.02}};
     for (const Vector2d& pixel : {Vector2d(0, 0), Vector2d(639, 479), Vector2d(322, 236), Vector2d(100, 400)}) {
