@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-enum Stream : std::uint64_t { kDepthNoise = 60, kDepthDropout, kDepthMixed };
+enum DepthStream : std::uint64_t { kDepthNoise = 60, kDepthDropout, kDepthMixed };
 
 constexpr double kSmallestStep = 0.5;  // mm of depth; smaller steps mix no pixels
 

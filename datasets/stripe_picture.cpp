@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-enum Stream : std::uint64_t { kPixelNoise = 50, kSpeckle, kColumnLoss };
+enum StripeStream : std::uint64_t { kPixelNoise = 50, kSpeckle, kColumnLoss };
 
 constexpr double kReach = 4;        // 1-sigmas: beyond, a Gaussian is a tenth of a grey value
 constexpr double kFwhm = 2.354820;  // of a Gaussian: 2 sqrt(2 log 2)

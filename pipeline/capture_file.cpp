@@ -192,6 +192,12 @@ StripeCapture stripe_capture(const Json& root, const fs::path& folder, std::vect
     if (object.has("frames") && (!frames.is_array() || frames.empty())) {
         object.complain("frames", "a list with a picture and its pose each was needed");
     }
+    // Pixels of the scan's raster are counted with 32 bits.
+    if (frames.is_array() && frames.size() * static_cast<std::size_t>(capture.camera.width) > 0xffffffff) {
+        object.complain("frames", "are too many for one scan: " + std::to_string(frames.size()) + " of " +
+                                      std::to_string(capture.camera.width) + " columns; divide the capture");
+        return capture;
+    }
     for (std::size_t i = 0; frames.is_array() && i < frames.size(); ++i) {
         const CaptureObject frame(frames[i], "/frames/" + std::to_string(i), problems, {"image", "base_from_camera"});
         capture.images.push_back(image_from(frame, folder));

@@ -32,9 +32,10 @@ GreyImage picture_of(const fs::path& file, const CameraModel& camera) {
 }
 
 void check_not_black(const GreyImage& image, const fs::path& file) {
-    constexpr double kBlack = 0.02;  // of white: what a covered camera gives by its noise
+    // What a covered camera gives by its noise; cameras of 10 or 12 bits fill the lower ones of 16.
+    const double black = image.white > 255 ? 0.001 * image.white : 0.02 * image.white;
     const double brightest = *std::max_element(image.value.begin(), image.value.end());
-    if (brightest <= kBlack * image.white) {
+    if (brightest <= black) {
         throw InputError("read: " + file.string() + ": is black: its brightest pixel is " + shortest(brightest) +
                          " of " + shortest(image.white) + "; check the laser, the lens cap and the exposure");
     }

@@ -189,11 +189,12 @@ std::vector<Chain> choose_lines(std::vector<Chain> chains, int count) {
             break;
         }
         lines.push_back(std::move(chain));
-        for (auto i = line.rbegin(); i != line.rend(); ++i) {
-            chains.erase(chains.begin() + static_cast<std::ptrdiff_t>(*i));
+        for (const std::size_t i : line) {
+            chains[i].links.clear();
         }
-        std::erase_if(chains,
-                      [&](const Chain& other) { return median_of(other, &Bar::contrast) < kFaintest * contrast; });
+        std::erase_if(chains, [&](const Chain& other) {
+            return other.links.empty() || median_of(other, &Bar::contrast) < kFaintest * contrast;
+        });
     }
     return lines;
 }

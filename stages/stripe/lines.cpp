@@ -54,7 +54,7 @@ Cuts possible_cuts(std::span<const Vector2d> points) {
     const std::size_t step = std::max<std::size_t>(1, points.size() / kMostCuts);
     Cuts cuts;
     LineSums sums;
-    const Vector2d origin = points[points.size() / 2];
+    const Vector2d& origin = points[points.size() / 2];
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (i % step == 0) {
             cuts.at.push_back(i);
@@ -96,7 +96,7 @@ ProfileLine robust_line(std::span<const Vector2d> points, std::size_t begin, std
                         const ProfileScale& profile) {
     constexpr std::size_t kFewest = 8;
     constexpr double kTukeyLimit = 4.685;
-    const Vector2d first = points[begin], last = points[end - 1];
+    const Vector2d &first = points[begin], &last = points[end - 1];
     std::vector<Vector2d> inner;
     for (std::size_t i = begin; i < end; ++i) {
         if ((points[i] - first).norm() > profile.band && (points[i] - last).norm() > profile.band) {

@@ -15,28 +15,21 @@ struct Derivatives {
 
 Derivatives derivatives(const GreyImage& image, const RidgeKernel& k, int column, int row) {
     Derivatives d;
-    for (int j = -k.radius; j <= k.radius; ++j) {
+    const std::size_t n = k.g.size();
+    const int left = column - k.radius, top = row - k.radius;
+    const bool inside = left >= 0 && column + k.radius < image.width;
+    for (std::size_t j = 0; j < n; ++j) {
+        const int r = std::clamp(top + static_cast<int>(j), 0, image.height - 1);
+        const float* line = image.value.data() + static_cast<std::size_t>(r) * static_cast<std::size_t>(image.width);
         double s = 0, s1 = 0, s2 = 0;
-        const auto add = [&](int i, double value) {
-            const auto n = static_cast<std::size_t>(i + k.radius);
-            s += k.g[n] * value, s1 += k.g1[n] * value, s2 += k.g2[n] * value;
-        };
-        if (column >= k.radius && column + k.radius < image.width) {
-            const int r = std::clamp(row + j, 0, image.height - 1);
-            const float* line = &image.value[static_cast<std::size_t>(r) * static_cast<std::size_t>(image.width) +
-                                             static_cast<std::size_t>(column - k.radius)];
-            for (int i = -k.radius; i <= k.radius; ++i) {
-                add(i, line[i + k.radius]);
-            }
-        } else {
-            for (int i = -k.radius; i <= k.radius; ++i) {
-                add(i, image.clamped(column + i, row + j));
-            }
+        for (std::size_t i = 0; i < n; ++i) {
+            const int c = left + static_cast<int>(i);
+            const double value = line[inside ? c : std::clamp(c, 0, image.width - 1)];
+            s += k.g[i] * value, s1 += k.g1[i] * value, s2 += k.g2[i] * value;
         }
-        const auto n = static_cast<std::size_t>(j + k.radius);
-        d.x += k.g[n] * s1, d.xx += k.g[n] * s2;
-        d.y += k.g1[n] * s, d.xy += k.g1[n] * s1;
-        d.yy += k.g2[n] * s;
+        d.x += k.g[j] * s1, d.xx += k.g[j] * s2;
+        d.y += k.g1[j] * s, d.xy += k.g1[j] * s1;
+        d.yy += k.g2[j] * s;
     }
     return d;
 }
