@@ -138,19 +138,23 @@ ScanInput read_scan(const fs::path& file, const ReadOptions& options) {
 }
 
 std::string scan_sha256(const fs::path& file) {
-    std::string sha = sha256_of_file(file);
+    const std::string own = sha256_of_file(file);
     if (!is_capture(file)) {
-        return sha;
+        return own;
     }
-    const Capture capture = read_capture(file);
-    if (const auto* stripes = std::get_if<StripeCapture>(&capture)) {
-        for (const fs::path& image : stripes->images) {
-            sha += sha256_of_file(image);
-        }
-    } else {
-        sha += sha256_of_file(std::get<DepthCapture>(capture).image);
+    std::vector<fs::path> images;
+    try {
+        const Capture capture = read_capture(file);
+        const auto* stripes = std::get_if<StripeCapture>(&capture);
+        images = stripes ? stripes->images : std::vector<fs::path>{std::get<DepthCapture>(capture).image};
+    } catch (const InputError&) {
+        return own;  // no scan of any run; what is wrong with it is told when it is read
     }
-    return sha256(sha);
+    std::string all = own;
+    for (const fs::path& image : images) {
+        all += sha256_of_file(image);
+    }
+    return sha256(all);
 }
 
 std::vector<std::string> compare_with_profiles(const ScanInput& input, const std::vector<Seam>& seams) {

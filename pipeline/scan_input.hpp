@@ -23,7 +23,7 @@ struct ScanInput {
 /// Reads the file and what it names. Throws InputError.
 ScanInput read_scan(const std::filesystem::path& file, const ReadOptions& options);
 
-/// SHA-256 of the file; of a capture, of the file and all of its pictures.
+/// SHA-256 of the file; of a capture, of the file and all of its pictures. Throws InputError when one can't be read.
 std::string scan_sha256(const std::filesystem::path& file);
 
 /// How far each seam lies from the same seam measured profile by profile, one sentence a seam; empty without profiles.
