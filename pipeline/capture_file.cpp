@@ -175,7 +175,7 @@ LaserPlane plane_from(const Json& value, std::vector<std::string>& problems) {
 /// The picture's path; one that isn't there is a problem.
 fs::path image_from(const CaptureObject& object, const fs::path& folder) {
     const std::string name = object.text("image");
-    const fs::path image = folder / name;
+    fs::path image = folder / name;
     std::error_code ignored;
     if (!name.empty() && !fs::is_regular_file(image, ignored)) {
         object.complain("image", "there is no picture " + image.string());

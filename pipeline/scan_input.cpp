@@ -138,7 +138,7 @@ ScanInput read_scan(const fs::path& file, const ReadOptions& options) {
 }
 
 std::string scan_sha256(const fs::path& file) {
-    const std::string own = sha256_of_file(file);
+    std::string own = sha256_of_file(file);
     if (!is_capture(file)) {
         return own;
     }
