@@ -6,6 +6,7 @@
 #include "pipeline/digest.hpp"
 #include "pipeline/pose_option.hpp"
 #include "pipeline/report.hpp"
+#include "pipeline/scan_input.hpp"
 #include "pipeline/summary.hpp"
 #include "pipeline/tables.hpp"
 #include "pipeline/walk.hpp"
@@ -144,9 +145,15 @@ PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config
     part.config = config;
     Walk walk(part, progress, &folder, resume);
 
+    ScanInput input;
     walk.always(
-        "read", [&] { part.scan = read(scan_file, config.read); }, read_summary);
-    const std::string file_sha256 = sha256_of_file(scan_file);
+        "read",
+        [&] {
+            input = read_scan(scan_file, config.read);
+            part.scan = std::move(input.scan);
+        },
+        read_summary);
+    const std::string file_sha256 = scan_sha256(scan_file);
     walk.depend_on("read", part.scan.name + "\n" + file_sha256);
 
     remove_products(folder);
@@ -154,6 +161,9 @@ PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config
     walk.keep("read",
               encode(part.scan, ScanRecord{fs::relative(scan_file, folder.path()).generic_string(), file_sha256}));
     walk_stages(part, walk);
+    for (std::string& sentence : compare_with_profiles(input, part.extraction.seams)) {
+        part.extraction.remarks.push_back(std::move(sentence));
+    }
     walk.always(
         "report", [&] { write_products(part, walk); }, report_summary);
     return part;

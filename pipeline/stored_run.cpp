@@ -5,8 +5,8 @@
 
 #include "pipeline/artefact.hpp"
 #include "pipeline/codec.hpp"
-#include "pipeline/digest.hpp"
 #include "pipeline/files.hpp"
+#include "pipeline/scan_input.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -48,12 +48,12 @@ StoredRun load_run(const fs::path& folder, const std::optional<fs::path>& scan_f
         throw InputError("run folder: the scan of " + folder.string() + " is not at " + file.string() +
                          " any more; say where it is with --scan FILE");
     }
-    if (const std::string sha256 = sha256_of_file(file); sha256 != record.file_sha256) {
+    if (const std::string sha256 = scan_sha256(file); sha256 != record.file_sha256) {
         throw InputError("run folder: " + file.string() + " is not the scan of " + folder.string() +
                          ": its SHA-256 is " + sha256 + ", that of the run's scan " + record.file_sha256 +
                          "; say where that is with --scan FILE, or run this scan");
     }
-    run.scan = read(file, run.config.read);
+    run.scan = read_scan(file, run.config.read).scan;
     run.seams = load<Extraction>(folder / "2-seams.json", "extract").seams;
     return run;
 }

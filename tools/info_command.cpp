@@ -10,6 +10,7 @@
 #include "pipeline/files.hpp"
 #include "pipeline/json_text.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/scan_input.hpp"
 #include "stages/error.hpp"
 #include "tools/commands.hpp"
 
@@ -26,7 +27,7 @@ Json vector_json(const Eigen::Vector3d& v) {
 }
 
 Json scan_info(const fs::path& file, const ReadOptions& options) {
-    const Scan scan = read(file, options);
+    const Scan scan = read_scan(file, options).scan;
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
         box.extend(scan.position(i));
@@ -90,7 +91,7 @@ bool has(const Json& root, std::initializer_list<const char*> keys) {
     return std::all_of(keys.begin(), keys.end(), [&](const char* key) { return root.contains(key); });
 }
 
-Json json_info(const fs::path& file) {
+Json json_info(const fs::path& file, const ReadOptions& options) {
     const std::string text = read_file(file, kMaxJsonBytes, "info");
     Json root;
     try {
@@ -105,6 +106,9 @@ Json json_info(const fs::path& file) {
     std::string what = "JSON";
     if (root.value("format", Json()) == "seampath truth") {
         return Json{{"what", "truth of a data set"}, {"content", truth_info(file, root)}};
+    }
+    if (has(root, {"kind", "camera"})) {
+        return scan_info(file, options);
     }
     if (has(root, {"stage", "key", "sha256", "content"})) {
         what = "artefact of a stage";
@@ -171,7 +175,7 @@ Command info_command(CLI::App& program) {
                 }
                 const Config config = read_config({}, overrides);
                 const fs::path file = file_of(given->file);
-                Json info = file.extension() == ".json" ? json_info(file) : scan_info(file, config.read);
+                Json info = file.extension() == ".json" ? json_info(file, config.read) : scan_info(file, config.read);
                 info = Json::parse(info.dump(-1, ' ', false, Json::error_handler_t::replace));
                 if (given->json) {
                     std::cout << info.dump(4) << "\n";

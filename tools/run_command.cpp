@@ -185,7 +185,7 @@ int run(const Arguments& given) {
 Command run_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("run", "scans in, seams, robot programs and reports out");
     const auto given = std::make_shared<Arguments>();
-    app->add_option("SCAN", given->scans, "scan files; several are several parts")->required();
+    app->add_option("SCAN", given->scans, "scans, or captures of pictures (.json); several are several parts")->required();
     app->add_option("--out", given->out, "folder for the results")->required();
     app->add_option("--config", given->config, "config file, JSON with comments");
     app->add_option(
