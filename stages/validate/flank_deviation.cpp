@@ -127,7 +127,9 @@ std::optional<FlankAt> by_windows(const Course& course, const std::vector<Window
         }
     }
     if (near.size() < kFew) {
-        return own && windows[i].explains[k] ? std::optional(by_window(*own, k, p)) : std::nullopt;
+        // One that is not sure says so by its sigma.
+        const bool holds = own && (windows[i].explains[k] || !is_sure(course, windows[i], k));
+        return holds ? std::optional(by_window(*own, k, p)) : std::nullopt;
     }
     std::sort(near.begin(), near.end(), [](const FlankAt& a, const FlankAt& b) { return a.distance < b.distance; });
     double left = 0;
