@@ -8,9 +8,9 @@
 #include "stages/geometry/pose.hpp"
 
 /// KUKA KRL: a .src of moves and a .dat of their frames; above 1400 lines a main program and parts of whole welds.
-/// Positions in mm with 3 decimals, angles A, B, C of Rz(A) Ry(B) Rx(C) in deg with 4, speeds in m/s. LIN and CIRC with
-/// C_DIS along welds, or spline blocks. The arc is struck and ended by sub-programs of the user: what ArcTech's own
-/// inline forms hold depends on its version.
+/// Positions in mm with 3 decimals, angles A, B, C of Rz(A) Ry(B) Rx(C) in deg with 4, speeds in m/s. Through the air
+/// PTP to axis angles where the arm is known. LIN and CIRC with C_DIS along welds, or spline blocks. The arc is struck
+/// and ended by sub-programs of the user: what ArcTech's own inline forms hold depends on its version.
 namespace seampath::exporting {
 namespace {
 
@@ -43,6 +43,14 @@ std::string frame(const Waypoint& w) {
            degrees(abc[0], 4) + ",B " + degrees(abc[1], 4) + ",C " + degrees(abc[2], 4) + "}";
 }
 
+std::string axes(const AxisPoint& point) {
+    std::vector<std::string> parts = axis_degrees(point.q, 4);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i] = "A" + std::to_string(i + 1) + " " + parts[i];
+    }
+    return "{" + joined(parts, ",") + "}";
+}
+
 std::string metres_per_second(double mm_s) {
     // Nine digits are more than the controller's 24 bits hold.
     const int decimals = 8 - static_cast<int>(std::floor(std::log10(mm_s / 1000)));
@@ -63,7 +71,10 @@ public:
     void write(const Section& part) {
         for (std::size_t k = part.begin; k < part.end; ++k) {
             const Target& target = all_[k];
-            data += "DECL FRAME P" + std::to_string(count_) + "=" + frame(target.at) + "\n";
+            const std::string point = " P" + std::to_string(count_) + "=";
+            data += (target.axes.empty() ? "DECL FRAME" + point + frame(target.at)
+                                         : "DECL E6AXIS" + point + axes(target.axes.back())) +
+                    "\n";
             ++count_;
             if (target.move != Move::via) {
                 move(k);
@@ -204,7 +215,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kKuka{"kuka", kRounding_mm, kMaxCoordinate_mm, 0,     true,     true,
+constinit const Format kKuka{"kuka", kRounding_mm, kMaxCoordinate_mm, 0,     true,     true, Axes::air,
                              true,   told,         problems,          write, read_kuka};
 
 }  // namespace seampath::exporting
