@@ -172,12 +172,28 @@ Told told(const ExportOptions& options) {
     return with_arc(options) ? Told::welding : Told::motion;
 }
 
+// Data under a name that the program itself declares would be hidden by it. Names are not case-sensitive.
+bool is_the_programs(const std::string& value, const std::string& program) {
+    const std::string name = lower(value), own = lower(program);
+    return name == own || is_numbered(name, "speed") || is_numbered(name, own + "_seam") ||
+           is_numbered(name, own + "_mod");
+}
+
 std::vector<std::string> problems(const ExportOptions& options) {
     std::vector<std::string> found =
         name_problems("program_name", options.program_name, kMaxProgramName, reserved_for_program(), "RAPID");
     const auto check = [&](std::string_view key, const std::string& value) {
         append(found, name_problems(key, value, kMaxName, reserved(), "RAPID"));
+        if (is_the_programs(value, options.program_name)) {
+            found.push_back(std::string(key) + ": \"" + value +
+                            "\" is a name that the program itself declares; another "
+                            "name was needed, or another program_name");
+        }
     };
+    if (is_numbered(lower(options.program_name), "speed")) {
+        found.push_back("program_name: \"" + options.program_name +
+                        "\" is what the program's speeds are called; another name was needed");
+    }
     check("abb_tool", options.abb_tool);
     check("abb_work_object", options.abb_work_object);
     check("abb_zone", options.abb_zone);

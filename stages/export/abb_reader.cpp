@@ -100,14 +100,14 @@ Module module(const TextFile& file) {
         }
         if (word == "proc") {
             const std::string name = identifier(scan);
-            result.procedures[name] = procedure(scan);
+            require(result.procedures.emplace(name, procedure(scan)).second, scan, "each procedure once");
         } else if (word == "const" || word == "pers" || word == "var") {
             identifier(scan);  // the type; what the data is used for tells it as well
             const std::string name = identifier(scan);
             if (!scan.accept(":=")) {
                 scan.fail("':='");
             }
-            result.data[name] = value(scan);
+            require(result.data.emplace(name, value(scan)).second, scan, "all data once");
             scan.expect(';');
         } else {
             scan.fail("a declaration or a procedure before this place");
@@ -195,6 +195,7 @@ private:
             target.move = via ? Move::via : circular ? Move::circular : i.name == "movej" ? Move::joint : Move::linear;
             target.at.kind = via && kind == WaypointKind::weld_end ? WaypointKind::weld : kind;
             target.at.speed_mm_s = speed;
+            target.passed = !via && i.arguments[arguments - 2].name != "fine";
             set_pose(target.at, resolve(i.arguments[k], m, i.place), i.place);
             targets.push_back(target);
         }

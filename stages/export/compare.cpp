@@ -87,6 +87,9 @@ ReadBack compare(const Format& f, Told told, const std::vector<Target>& written,
         if (b.kind != told_kind(told, a.kind)) {
             fail(place(a) + " is " + std::string(name(b.kind)));
         }
+        if (read[k].passed && a.kind != WaypointKind::weld) {
+            fail(place(a) + " is passed without a stop");
+        }
         if (written[k].move != read[k].move) {
             fail(place(a) + " is reached by another kind of move");
         }

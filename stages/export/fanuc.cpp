@@ -115,22 +115,14 @@ std::array<double, 6> pendant_axes(const AxisPoint& axes) {
     return j;
 }
 
-// Wrist and turns of such axes as a configuration has them: F where J5 is above 0, and turn t of J1, J4 and J6 from
-// -180 + 360 t deg, without, to 180 + 360 t.
+// The wrist of a configuration is F where J5 is above 0. Turns are none of a straight move's business, and elbow and
+// front are the cell's to tell.
 void require_configuration(const Target& target, const ExportOptions& options) {
-    const std::array<double, 6> j = pendant_axes(target.axes.back());
-    std::string turns;
-    for (const std::size_t axis : {0, 3, 5}) {
-        turns += ", " + plain(std::ceil(j[axis] * kDegrees / 360 - 0.5) + 0.0);
-    }
-    const std::string wrist = j[4] > 0 ? "F" : "N";
-    const std::string& given = options.fanuc_configuration;
-    if (given.substr(0, 1) != wrist || given.substr(5) != turns) {
+    const char wrist = target.axes.back().q[4] > 0 ? 'F' : 'N';
+    if (options.fanuc_configuration.front() != wrist) {
         throw InputError("export: fanuc: the plan's arm comes to " + place(target.at) + " with wrist " + wrist +
-                         " and turns" + turns.substr(1) +
-                         "; a configuration with these was needed; change "
-                         "export.fanuc_configuration, which is \"" +
-                         given + "\", or export.base_from_scan");
+                         "; a configuration with that was needed; change export.fanuc_configuration, which is \"" +
+                         options.fanuc_configuration + "\", or export.base_from_scan");
     }
 }
 

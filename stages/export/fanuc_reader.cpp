@@ -83,6 +83,7 @@ private:
         const std::string termination = scan.name();
         const bool fine = termination == "FINE";
         require(fine || termination == "CNT100", scan, "FINE or CNT100");
+        targets.back().passed = !fine;
         if (scan.accept(':')) {
             process(scan, program, fine);
         }

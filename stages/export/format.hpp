@@ -39,6 +39,7 @@ struct Target {
     /// Of the arm: Axes::air, where it stands at the end of a move along the axes, which then tells no pose; Axes::all,
     /// on the way here and here.
     std::vector<AxisPoint> axes{};
+    bool passed = false;  ///< as read: on the way, within what the language rounds corners by, and not stopped in
 };
 
 struct Program {

@@ -161,6 +161,10 @@ Told told(const ExportOptions& options) {
 std::vector<std::string> problems(const ExportOptions& options) {
     std::vector<std::string> found =
         name_problems("program_name", options.program_name, kMaxProgramName, reserved(), "KRL");
+    if (is_numbered(lower(options.program_name), "p")) {
+        found.push_back("program_name: \"" + options.program_name +
+                        "\" is what the program's points are called; another name was needed");
+    }
     append(found, needed_number_problems("kuka_tool", options.kuka_tool, 1, 128, "number of a tool"));
     append(found, number_problems("kuka_base", options.kuka_base, 1, 128, "number of a base"));
     if (options.kuka_arc_on.empty() != options.kuka_arc_off.empty()) {
@@ -171,9 +175,13 @@ std::vector<std::string> problems(const ExportOptions& options) {
         append(found, name_problems("kuka_arc_off", options.kuka_arc_off, kMaxName, reserved(), "KRL"));
         const std::string on = lower(options.kuka_arc_on), off = lower(options.kuka_arc_off);
         const std::string program = lower(options.program_name);
-        if (on == off || on == program || off == program) {
+        const auto is_the_programs = [&](const std::string& name) {
+            return name == program || is_numbered(name, "p") || is_numbered(name, program + "_");
+        };
+        if (on == off || is_the_programs(on) || is_the_programs(off)) {
             found.push_back("kuka_arc_on: \"" + options.kuka_arc_on + "\", kuka_arc_off \"" + options.kuka_arc_off +
-                            "\" and program_name \"" + options.program_name + "\"; three different names were needed");
+                            "\" and program_name \"" + options.program_name +
+                            "\"; three different names were needed, and none as the program's points and parts have");
         }
     }
     return found;

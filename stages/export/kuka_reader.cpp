@@ -112,8 +112,9 @@ Frames data_list(const TextFile& file, const std::string& module) {
         }
         const std::string name = identifier(scan);
         scan.expect('=');
-        frames[name] =
+        const Target target =
             type == "frame" ? frame(scan) : axes_target(aggregate(scan, {"a1", "a2", "a3", "a4", "a5", "a6"}));
+        require(frames.emplace(name, target).second, scan, "each point once");
         scan.end_line();
     }
     scan.end_line();
@@ -288,6 +289,7 @@ private:
             expect_word(scan, "c_dis");
             require(approximation_, scan, "$APO.CDIS first");
             exact_ = false;
+            targets.back().passed = true;
         }
         targets.back().at.speed_mm_s = 1000 * speed;
         if (circular) {

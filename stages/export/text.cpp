@@ -84,6 +84,11 @@ bool is_identifier(std::string_view text) {
     return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), is_part_of_name);
 }
 
+bool is_numbered(std::string_view name, std::string_view stem) {
+    return name.size() > stem.size() && name.starts_with(stem) &&
+           std::all_of(name.begin() + static_cast<std::ptrdiff_t>(stem.size()), name.end(), is_digit);
+}
+
 std::vector<std::string> name_problems(std::string_view key, const std::string& value, std::size_t longest,
                                        const std::vector<std::string_view>& reserved, std::string_view language) {
     const std::string what = std::string(key) + ": \"" + value + "\" ";

@@ -40,6 +40,9 @@ std::string lower(std::string_view text);
 /// [A-Za-z][A-Za-z0-9_]*
 bool is_identifier(std::string_view text);
 
+/// `stem` and a number: "speed12".
+bool is_numbered(std::string_view name, std::string_view stem);
+
 /// "key: "value" is ...": why `value` is no name of at most `longest` characters outside `reserved` (lower case), or
 /// nothing.
 std::vector<std::string> name_problems(std::string_view key, const std::string& value, std::size_t longest,

@@ -187,6 +187,7 @@ private:
             target.at.speed_mm_s = 1000 * named("v", 0.25);
             targets.push_back(target);
             blends_.push_back(k + 1 < points ? 0 : 1000 * named("r", 0));
+            targets.back().passed = blends_.back() > 0;
         }
     }
 

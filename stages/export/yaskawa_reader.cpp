@@ -135,6 +135,7 @@ private:
             require(level <= 8, scan, "a position level from 0 to 8");
             stopped_ = level == 0;
         }
+        target.passed = !stopped_;
         const bool on_the_spot = !targets.empty() && targets.back().at.p == target.at.p &&
                                  targets.back().at.q.coeffs() == target.at.q.coeffs();
         if (word == "MOVC") {

@@ -277,6 +277,13 @@ TEST(Brands, SayWhichKeySetsWhatIsMissing) {
         {"linuxcnc", "linuxcnc_arc_output: 64 is no digital output", [](auto& o) { o.linuxcnc_arc_output = 64; }},
         {"linuxcnc", "linuxcnc_work_offset: 10", [](auto& o) { o.linuxcnc_work_offset = 10; }},
         {"ros", "ros_frame: \"base link\" is no frame", [](auto& o) { o.ros_frame = "base link"; }},
+        {"abb", "abb_weld_data: \"Speed0\" is a name that the program itself declares",
+         [](auto& o) { o.abb_seam_data = "s", o.abb_weld_data = "Speed0"; }},
+        {"abb", "abb_tool: \"seampath_seam3\" is a name that", [](auto& o) { o.abb_tool = "seampath_seam3"; }},
+        {"abb", "program_name: \"speed2\" is what", [](auto& o) { o.program_name = "speed2"; }},
+        {"kuka", "none as the program's points", [](auto& o) { o.kuka_arc_on = "P1", o.kuka_arc_off = "x"; }},
+        {"kuka", "none as the program's points", [](auto& o) { o.kuka_arc_on = "x", o.kuka_arc_off = "Seampath_0"; }},
+        {"kuka", "program_name: \"p7\" is what", [](auto& o) { o.program_name = "p7"; }},
         {"abb", "abb_weave_data: \"w\" stands alone", [](auto& o) { o.abb_weave_data = "w"; }},
     };
     for (const Bad& bad : all) {
