@@ -100,11 +100,9 @@ TEST_P(ArmMoves, AreForThatArmsRobotAlone) {
 
 // Parts begin with a move along the axes, each with what it needs.
 TEST_P(ArmMoves, GoIntoEveryPartOfALongProgram) {
-    if (options.robots == "ur") {
-        GTEST_SKIP() << "has no parts";
-    }
     Plan plan = test::side_by_side(8, 1300, [](int k) { return Eigen::Vector3d(0.5 * k, 0.5 * (k % 2), 0); });
     ArmTravel arm;
+    arm.max_speed = {2, 2, 2, 4, 4, 4};
     for (std::size_t k = 0; k < plan.waypoints.size(); ++k) {
         arm.samples.push_back({plan.waypoints[k].seam,
                                plan.waypoints[k].kind,
@@ -117,7 +115,7 @@ TEST_P(ArmMoves, GoIntoEveryPartOfALongProgram) {
     }
     plan.arm = arm;
     const auto files = export_programs(plan, options);
-    EXPECT_GT(files.size(), 2u);
+    EXPECT_TRUE(files.size() > 2 || options.robots == "ur") << "all others have parts";
     EXPECT_LE(files[0].max_axis_error_deg, kCoarsest_deg);
 }
 
