@@ -20,7 +20,15 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxUrdfBytes = std::size_t{1} << 24;
 
+// Of kArmNames, in their order.
+constexpr std::array<std::string_view, kArmNames.size()> kArmRobots{"abb", "abb", "ur", "kuka", "fanuc"};
+
 }  // namespace
+
+std::string robot_of_arm(std::string_view name_or_file) {
+    const auto known = std::find(kArmNames.begin(), kArmNames.end(), name_or_file);
+    return std::string(known == kArmNames.end() ? "" : kArmRobots[static_cast<std::size_t>(known - kArmNames.begin())]);
+}
 
 ArmFile load_arm(const std::string& given) {
     const auto known = std::find(kArmNames.begin(), kArmNames.end(), given);

@@ -18,6 +18,9 @@ struct ArmFile {
     Arm arm;
 };
 
+/// The robot of kRobotNames whose controller has the axes of an arm of kArmNames; empty for a file's.
+std::string robot_of_arm(std::string_view name_or_file);
+
 /// By a name of kArmNames, or from a URDF file. Throws InputError for neither, and as arm_from_urdf() does.
 ArmFile load_arm(const std::string& name_or_file);
 

@@ -174,7 +174,8 @@ std::string assign(const Field& field, const Json& value) {
 std::string_view unit_of(std::string_view key) {
     // the longest suffix first: "_mm_s" also ends in "_s"
     static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
-        {"_per_mm", "1/mm"}, {"_deg_s", "deg/s"}, {"_mm_s", "mm/s"}, {"_mm", "mm"}, {"_deg", "deg"}, {"_s", "s"}};
+        {"_per_mm", "1/mm"}, {"_per_deg", "1/deg"}, {"_deg_s", "deg/s"}, {"_mm_s", "mm/s"},
+        {"_mm", "mm"},       {"_deg", "deg"},       {"_s", "s"}};
     for (const auto& [suffix, unit] : kUnits) {
         if (key.ends_with(suffix)) {
             return unit;

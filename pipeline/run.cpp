@@ -9,6 +9,7 @@
 #include "pipeline/scan_input.hpp"
 #include "pipeline/summary.hpp"
 #include "pipeline/tables.hpp"
+#include "pipeline/text.hpp"
 #include "pipeline/walk.hpp"
 #include "stages/text.hpp"
 
@@ -59,6 +60,22 @@ bool may_export(const PartResult& part) {
     return !part.planned_seams.empty() && reached;
 }
 
+/// What the arm says of itself where the options do not.
+ExportOptions export_options(const Config& config, const Cell& cell) {
+    ExportOptions options = config.export_;
+    if (cell.arm && options.arm_robot.empty()) {
+        options.arm_robot = robot_of_arm(config.plan.arm);
+    }
+    if (cell.arm && options.arm_joints.empty()) {
+        std::vector<std::string_view> names;
+        for (const ArmAxis& axis : cell.arm->arm.axes) {
+            names.push_back(axis.name);
+        }
+        options.arm_joints = join(names);
+    }
+    return options;
+}
+
 /// From the models to the programs, for `part.planned_seams`.
 void plan_and_export(PartResult& part, Walk& walk, const Cell& cell, const std::string& input) {
     walk.stage(
@@ -67,8 +84,8 @@ void plan_and_export(PartResult& part, Walk& walk, const Cell& cell, const std::
     walk.always(
         "export",
         [&] {
-            part.programs =
-                may_export(part) ? export_programs(part.plan, part.config.export_) : std::vector<ProgramFile>();
+            part.programs = may_export(part) ? export_programs(part.plan, export_options(part.config, cell))
+                                             : std::vector<ProgramFile>();
         },
         export_summary);
 }

@@ -225,6 +225,7 @@ std::string manifest_json(const std::vector<ProgramFile>& programs, const std::s
                              {"max_position_error_mm", program.max_position_error_mm},
                              {"max_orientation_error_deg", program.max_orientation_error_deg},
                              {"max_speed_error", program.max_speed_error},
+                             {"max_axis_error_deg", program.max_axis_error_deg},
                              {"max_path_error_mm", program.max_path_error_mm},
                              {"max_path_turn_deg", program.max_path_turn_deg},
                              {"moves", program.moves}});

@@ -6,9 +6,9 @@
 
 /// ABB RAPID. One module with a procedure per seam and a main that calls them; above 5000 lines one module per seam,
 /// since a weld is never split. Positions in mm with 3 decimals, quaternions w, x, y, z with 8 (an unnormalised one
-/// sends the robot tens of mm wrong), external axes 9E9, configuration not supervised. With seam and weld data named:
-/// ArcLStart, ArcL, ArcC, ArcLEnd; without: MoveL, MoveC. Tool, work object, zone, seam, weld and weave data are
-/// referred to by name and live on the controller.
+/// sends the robot tens of mm wrong), external axes 9E9, configuration not supervised. Through the air MoveAbsJ where
+/// the arm is known. With seam and weld data named: ArcLStart, ArcL, ArcC, ArcLEnd; without: MoveL, MoveC. Tool, work
+/// object, zone, seam, weld and weave data are referred to by name and live on the controller.
 namespace seampath::exporting {
 namespace {
 
@@ -52,6 +52,10 @@ std::string robtarget(const Waypoint& w) {
            "],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
 }
 
+std::string jointtarget(const AxisPoint& axes) {
+    return "[[" + joined(axis_degrees(axes.q, 4), ",") + "],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs";
+}
+
 // Speeds of the plan, in order of first use; each becomes a speeddata of its own.
 std::vector<double> speeds_of(const std::vector<Target>& targets) {
     std::vector<double> speeds;
@@ -86,7 +90,7 @@ std::string instruction(const Target& target, const ExportOptions& options) {
                 break;
         }
     }
-    return target.move == Move::joint ? "MoveJ" : circular ? "MoveC" : "MoveL";
+    return !target.axes.empty() ? "MoveAbsJ" : target.move == Move::joint ? "MoveJ" : circular ? "MoveC" : "MoveL";
 }
 
 // `via` is the point on the way of a circular move, otherwise nullptr.
@@ -95,8 +99,9 @@ std::string move(const Target* via, const Target& target, const std::vector<doub
     const Waypoint& w = target.at;
     const std::string name = instruction(target, options);
     const auto speed = std::find(speeds.begin(), speeds.end(), w.speed_mm_s) - speeds.begin();
-    std::string text = "    " + name + " " + (via != nullptr ? robtarget(via->at) + "," : "") + robtarget(w) +
-                       ",speed" + std::to_string(speed);
+    std::string text = "    " + name + " " + (via != nullptr ? robtarget(via->at) + "," : "") +
+                       (target.axes.empty() ? robtarget(w) : jointtarget(target.axes.back())) + ",speed" +
+                       std::to_string(speed);
     if (name.starts_with("Arc")) {
         text += "," + options.abb_seam_data + "," + options.abb_weld_data +
                 (options.abb_weave_data.empty() ? "" : "\\Weave:=" + options.abb_weave_data);
@@ -167,12 +172,28 @@ Told told(const ExportOptions& options) {
     return with_arc(options) ? Told::welding : Told::motion;
 }
 
+// Data under a name that the program itself declares would be hidden by it. Names are not case-sensitive.
+bool is_the_programs(const std::string& value, const std::string& program) {
+    const std::string name = lower(value), own = lower(program);
+    return name == own || is_numbered(name, "speed") || is_numbered(name, own + "_seam") ||
+           is_numbered(name, own + "_mod");
+}
+
 std::vector<std::string> problems(const ExportOptions& options) {
     std::vector<std::string> found =
         name_problems("program_name", options.program_name, kMaxProgramName, reserved_for_program(), "RAPID");
     const auto check = [&](std::string_view key, const std::string& value) {
         append(found, name_problems(key, value, kMaxName, reserved(), "RAPID"));
+        if (is_the_programs(value, options.program_name)) {
+            found.push_back(std::string(key) + ": \"" + value +
+                            "\" is a name that the program itself declares; another "
+                            "name was needed, or another program_name");
+        }
     };
+    if (is_numbered(lower(options.program_name), "speed")) {
+        found.push_back("program_name: \"" + options.program_name +
+                        "\" is what the program's speeds are called; another name was needed");
+    }
     check("abb_tool", options.abb_tool);
     check("abb_work_object", options.abb_work_object);
     check("abb_zone", options.abb_zone);
@@ -223,7 +244,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kAbb{"abb", kRounding_mm, kMaxCoordinate_mm, 0,     true,    true,
+constinit const Format kAbb{"abb", kRounding_mm, kMaxCoordinate_mm, 0,     true,    true, Axes::air,
                             true,  told,         problems,          write, read_abb};
 
 }  // namespace seampath::exporting

@@ -100,14 +100,14 @@ Module module(const TextFile& file) {
         }
         if (word == "proc") {
             const std::string name = identifier(scan);
-            result.procedures[name] = procedure(scan);
+            require(result.procedures.emplace(name, procedure(scan)).second, scan, "each procedure once");
         } else if (word == "const" || word == "pers" || word == "var") {
             identifier(scan);  // the type; what the data is used for tells it as well
             const std::string name = identifier(scan);
             if (!scan.accept(":=")) {
                 scan.fail("':='");
             }
-            result.data[name] = value(scan);
+            require(result.data.emplace(name, value(scan)).second, scan, "all data once");
             scan.expect(';');
         } else {
             scan.fail("a declaration or a procedure before this place");
@@ -155,6 +155,9 @@ private:
         } else if (i.name == "movel" || i.name == "movej" || i.name == "movec") {
             require(!welding_, i.place, "ArcLEnd first and not a move");
             move(i, m, 2, WaypointKind::air);
+        } else if (i.name == "moveabsj") {
+            require(!welding_, i.place, "ArcLEnd first and not a move");
+            axes(i, m);
         } else if (i.name == "arclstart" || i.name == "arcl" || i.name == "arclend" || i.name == "arcc" ||
                    i.name == "arccend") {
             const bool start = i.name.ends_with("start"), end = i.name.ends_with("end");
@@ -192,8 +195,29 @@ private:
             target.move = via ? Move::via : circular ? Move::circular : i.name == "movej" ? Move::joint : Move::linear;
             target.at.kind = via && kind == WaypointKind::weld_end ? WaypointKind::weld : kind;
             target.at.speed_mm_s = speed;
+            target.passed = !via && i.arguments[arguments - 2].name != "fine";
             set_pose(target.at, resolve(i.arguments[k], m, i.place), i.place);
             targets.push_back(target);
+        }
+    }
+
+    // To-joint-point, speed, zone and tool: a jointtarget is [axes deg], [external axes].
+    void axes(const Instruction& i, const Module& m) {
+        require(i.arguments.size() == 4 && i.options.size() == 2, i.place, "4 arguments and 2 options");
+        require(i.options.contains("noeoffs") && i.options.contains("wobj") && !i.options.at("wobj").name.empty(),
+                i.place, "\\NoEOffs and \\WObj");
+        require(i.arguments[2].name == "fine" && !i.arguments[3].name.empty(), i.place, "zone fine and a tool");
+        const Value& target = resolve(i.arguments[0], m, i.place);
+        require(target.items.size() == 2, i.place, "a jointtarget of two parts");
+        const std::vector<double> q = numbers(target.items[0], 6, i.place);
+        no_external_axes(target.items[1], i.place);
+        targets.push_back(axes_target({q[0], q[1], q[2], q[3], q[4], q[5]}));
+        targets.back().at.speed_mm_s = numbers(resolve(i.arguments[1], m, i.place), 4, i.place)[0];
+    }
+
+    static void no_external_axes(const Value& axes, const Scanner& place) {
+        for (const double axis : numbers(axes, 6, place)) {
+            require(axis == 9e9, place, "9E9 for an external axis that is not there");
         }
     }
 
@@ -222,9 +246,7 @@ private:
         const std::vector<double> trans = numbers(robtarget.items[0], 3, place);
         const std::vector<double> rot = numbers(robtarget.items[1], 4, place);
         numbers(robtarget.items[2], 4, place);
-        for (const double axis : numbers(robtarget.items[3], 6, place)) {
-            require(axis == 9e9, place, "9E9 for an external axis that is not there");
-        }
+        no_external_axes(robtarget.items[3], place);
         w.p = {trans[0], trans[1], trans[2]};
         w.q = Eigen::Quaterniond(rot[0], rot[1], rot[2], rot[3]);
         require(std::abs(w.q.norm() - 1) < 1e-7, place, "a normalised quaternion");

@@ -84,7 +84,8 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     }
     text += "# Units: mm, mm/s, s. Quaternion order: qw,qx,qy,qz (base_from_tool, scalar first).\n";
     text += "seam,index,kind,station_mm,x,y,z,qw,qx,qy,qz,speed_mm_s,time_s,sigma_mm\n";
-    for (const auto& [w, move, k] : program.targets) {
+    for (const Target& target : program.targets) {
+        const Waypoint& w = target.at;
         text += std::to_string(w.seam) + "," + std::to_string(w.index) + "," + std::string(name(w.kind)) + "," +
                 list({w.station_mm, w.p.x(), w.p.y(), w.p.z(), w.q.w(), w.q.x(), w.q.y(), w.q.z(), w.speed_mm_s,
                       w.time_s, w.sigma_mm},
@@ -117,6 +118,7 @@ std::vector<Target> read(const std::vector<TextFile>& files) {
 
 }  // namespace
 
-constinit const Format kCsv{"csv", 0, kAnywhere, 0, false, false, true, tells_everything, no_problems, write, read};
+constinit const Format kCsv{"csv",      0,    kAnywhere,        0,           false, false,
+                            Axes::none, true, tells_everything, no_problems, write, read};
 
 }  // namespace seampath::exporting

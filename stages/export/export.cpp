@@ -64,6 +64,23 @@ std::vector<std::string> frame_problems(const std::vector<double>& base_from_sca
             "] is no pose; x, y, z in mm and a quaternion qw, qx, qy, qz of length 1 were needed"};
 }
 
+// Those whose languages have moves to angles of axes.
+std::vector<std::string> arm_problems(const std::string& robot) {
+    std::string known;
+    for (const Format* f : kFormats) {
+        if (f->axes == Axes::air) {
+            known += (known.empty() ? "" : ", ") + std::string(f->name);
+            if (robot == f->name) {
+                return {};
+            }
+        }
+    }
+    if (robot.empty()) {
+        return {};
+    }
+    return {"arm_robot: \"" + robot + "\" has no moves along axes; one of " + known + " was needed, or nothing"};
+}
+
 Plan in_base(const Plan& plan, const std::vector<double>& b) {
     const Eigen::Vector3d origin(b[0], b[1], b[2]);
     const Eigen::Quaterniond turn = Eigen::Quaterniond(b[3], b[4], b[5], b[6]).normalized();
@@ -121,6 +138,7 @@ std::vector<std::string> export_problems(const ExportOptions& options) {
         append(problems, f->problems(options));
     }
     append(problems, frame_problems(options.base_from_scan));
+    append(problems, arm_problems(options.arm_robot));
     return problems;
 }
 
@@ -147,7 +165,8 @@ std::vector<ProgramFile> export_programs(const Plan& plan, const ExportOptions& 
         for (const TextFile& file : files) {
             programs.push_back({std::string(f->name), file.name, file.text, f->position_rounding_mm,
                                 found.max_position_error_mm, found.max_orientation_error_deg, found.max_speed_error,
-                                path.max_error_mm, path.max_turn_deg, program.targets.size()});
+                                found.max_axis_error_deg, path.max_error_mm, path.max_turn_deg,
+                                program.targets.size()});
         }
     }
     return programs;

@@ -27,7 +27,9 @@ struct ExportOptions {
     bool arc_moves = true;  ///< where the language has them
     double arc_tolerance_mm = 0.02;
     double arc_tolerance_deg = 0.1;
-    double joint_speed_percent = 10;  ///< of the first move, where the language wants a share of the axes' speeds
+    double joint_speed_percent = 10;  ///< of moves along the axes, where the language wants a share of their speeds
+    std::string arm_robot;            ///< the robot whose axes the plan's arm has; empty: none
+    std::string arm_joints;           ///< names of its axes, comma-separated
 
     std::string abb_tool = "tool0";
     std::string abb_work_object = "wobj0";
@@ -54,9 +56,10 @@ struct ExportOptions {
     std::optional<double> ur_arc_output;              ///< standard digital output that strikes the arc
 
     std::optional<double> yaskawa_tool;
-    std::optional<double> yaskawa_user_frame;  ///< none: the robot's own base
-    std::string yaskawa_speed_unit;            ///< what V= means is a parameter of the controller
-    std::string yaskawa_configuration;         ///< numbers of ///RCONF
+    std::optional<double> yaskawa_user_frame;    ///< none: the robot's own base
+    std::string yaskawa_speed_unit;              ///< what V= means is a parameter of the controller
+    std::string yaskawa_configuration;           ///< numbers of ///RCONF
+    std::vector<double> yaskawa_pulses_per_deg;  ///< of the axes; needed where the plan's arm is a Yaskawa
     std::optional<double> yaskawa_arc_start;
     std::optional<double> yaskawa_arc_end;
     std::optional<double> yaskawa_weave;
@@ -82,17 +85,19 @@ struct ProgramFile {
     double position_rounding_mm = 0;   ///< half a unit of the last written place
     double max_position_error_mm = 0;  ///< found when read back
     double max_orientation_error_deg = 0;
-    double max_speed_error = 0;    ///< relative
-    double max_path_error_mm = 0;  ///< largest distance of the plan's waypoints from the moves as read back
-    double max_path_turn_deg = 0;  ///< the same of their orientations
-    std::size_t moves = 0;         ///< of the program
+    double max_speed_error = 0;     ///< relative
+    double max_axis_error_deg = 0;  ///< of moves along the axes
+    double max_path_error_mm = 0;   ///< largest distance of the plan's waypoints from the moves as read back
+    double max_path_turn_deg = 0;   ///< the same of their orientations
+    std::size_t moves = 0;          ///< of the program
 };
 
 /// Programs for every robot that `options.robots` names, each already read back and compared with the plan: every pose
-/// within the format's rounding and 0.001 deg, every speed within 0.5 %, same order, same process events; where
-/// straight moves were joined or replaced by arcs, every waypoint between within the arc tolerances. Poses are written
-/// in the base frame, base_from_scan * pose. Throws InputError for all that export_problems() finds, and for a value
-/// that a format can't hold.
+/// within the format's rounding and 0.001 deg, every speed within 0.5 %, every axis of a move along them within 0.001
+/// deg, same order, same process events; where straight moves were joined or replaced by arcs, every waypoint between
+/// within the arc tolerances. Poses are written in the base frame, base_from_scan * pose. Where the plan has an arm,
+/// the robot that options.arm_robot names goes through the air by that arm's axes, and ROS gets them all along. Throws
+/// InputError for all that export_problems() finds, and for a value that a format can't hold.
 std::vector<ProgramFile> export_programs(const Plan& plan, const ExportOptions& options);
 
 }  // namespace seampath

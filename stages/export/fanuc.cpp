@@ -13,6 +13,7 @@
 /// FANUC TP as ASCII (.ls), for the ASCII upload. Positions in mm and angles W, P, R of Rz(R) Ry(P) Rx(W) in deg, both
 /// with 3 decimals; of the roundings of an orientation the one that is nearest to it. Speeds are whole numbers: of
 /// mm/sec, cm/min or, where both are off by more than 0.45 %, of msec for the move. Arc and weave by schedule numbers.
+/// Through the air axis angles where the arm is known.
 /// Above 9999 lines a main program and parts of whole welds.
 namespace seampath::exporting {
 namespace {
@@ -62,7 +63,11 @@ std::string padded(double value, std::size_t width) {
     return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
+// Of the move to k; none behind a move along the axes, since the file does not tell where it ends.
 double length_of(const std::vector<Target>& all, std::size_t k) {
+    if (!all[k - 1].axes.empty()) {
+        return 0;
+    }
     if (all[k].move != Move::circular) {
         return (all[k].at.p - all[k - 1].at.p).norm();
     }
@@ -102,6 +107,24 @@ std::string speed(const std::vector<Target>& all, std::size_t k) {
         "plan.speed_mm_s or plan.air_speed_mm_s");
 }
 
+// Axes as the teach pendant shows them, deg: its J3 is the forearm's angle to the floor, which J2 does not change.
+std::array<double, 6> pendant_axes(const AxisPoint& axes) {
+    std::array<double, 6> j = axes.q;
+    j[2] -= j[1];
+    return j;
+}
+
+// The wrist of a configuration is F where J5 is above 0. Turns are none of a straight move's business, and elbow and
+// front are the cell's to tell.
+void require_configuration(const Target& target, const ExportOptions& options) {
+    const char wrist = target.axes.back().q[4] > 0 ? 'F' : 'N';
+    if (options.fanuc_configuration.front() != wrist) {
+        throw InputError("export: fanuc: the plan's arm comes to " + place(target.at) + " with wrist " + wrist +
+                         "; a configuration with that was needed; change export.fanuc_configuration, which is \"" +
+                         options.fanuc_configuration + "\", or export.base_from_scan");
+    }
+}
+
 // Instructions and positions of one part.
 class Writer {
 public:
@@ -116,7 +139,7 @@ public:
 
     void write(const Section& part) {
         for (std::size_t k = part.begin; k < part.end; ++k) {
-            position(all_[k].at);
+            position(all_[k]);
             if (all_[k].move != Move::via) {
                 move(k);
             }
@@ -126,16 +149,34 @@ public:
     std::size_t lines = 0;
 
 private:
-    void position(const Waypoint& w) {
+    void position(const Target& target) {
         ++points_;
+        positions += "P[" + std::to_string(points_) + "]{\n   GP1:\n\tUF : " + plain(*options_.fanuc_user_frame) +
+                     ", UT : " + plain(*options_.fanuc_tool) + ",\t" +
+                     (target.axes.empty() ? pose(target.at) : axes(target)) + "\n};\n";
+    }
+
+    static std::string deg(const std::string& name, double value) { return name + padded(value, 9) + " deg"; }
+
+    std::string axes(const Target& target) const {
+        require_configuration(target, options_);
+        const std::array<double, 6> j = pendant_axes(target.axes.back());
+        std::string text;
+        for (std::size_t i = 0; i < j.size(); ++i) {
+            text += (i == 0   ? "\n\t"
+                     : i == 3 ? ",\n\t"
+                              : ",\t") +
+                    deg("J" + std::to_string(i + 1) + "= ", kDegrees * j[i]);
+        }
+        return text;
+    }
+
+    std::string pose(const Waypoint& w) const {
         const Eigen::Vector3d rpw = rounded_angles(w.q);
         const auto mm = [](const char* name, double value) { return name + padded(value, 9) + "  mm"; };
-        const auto deg = [](const char* name, double value) { return name + padded(value, 9) + " deg"; };
-        positions += "P[" + std::to_string(points_) + "]{\n   GP1:\n\tUF : " + plain(*options_.fanuc_user_frame) +
-                     ", UT : " + plain(*options_.fanuc_tool) + ",\t\tCONFIG : '" + options_.fanuc_configuration +
-                     "',\n\t" + mm("X = ", w.p.x()) + ",\t" + mm("Y = ", w.p.y()) + ",\t" + mm("Z = ", w.p.z()) +
-                     ",\n\t" + deg("W = ", rpw[2]) + ",\t" + deg("P = ", rpw[1]) + ",\t" + deg("R = ", rpw[0]) +
-                     "\n};\n";
+        return "\tCONFIG : '" + options_.fanuc_configuration + "',\n\t" + mm("X = ", w.p.x()) + ",\t" +
+               mm("Y = ", w.p.y()) + ",\t" + mm("Z = ", w.p.z()) + ",\n\t" + deg("W = ", rpw[2]) + ",\t" +
+               deg("P = ", rpw[1]) + ",\t" + deg("R = ", rpw[0]);
     }
 
     void move(std::size_t k) {
@@ -247,7 +288,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kFanuc{"fanuc", kRounding_mm, kMaxCoordinate_mm, 0,     true,      true,
+constinit const Format kFanuc{"fanuc", kRounding_mm, kMaxCoordinate_mm, 0,     true,      true, Axes::air,
                               true,    told,         problems,          write, read_fanuc};
 
 }  // namespace seampath::exporting

@@ -16,6 +16,17 @@ struct TextFile {
     std::string text;
 };
 
+/// Where the axes of an arm stand at one moment.
+struct AxisPoint {
+    double time_s = 0;           ///< since the program's first target; 0 where the language tells no times
+    std::array<double, 6> q{};   ///< rad
+    std::array<double, 6> dq{};  ///< rad/s; 0 likewise
+};
+
+/// What a language tells of an arm's axes, where the plan has them. `air`: moves along the axes through the air, for
+/// the robot that the arm is. `all`: their whole travel, of any arm.
+enum class Axes { none, air, all };
+
 /// How the tool gets to a target. `joint`: along the robot's axes. `via`: the point on the way of the circular move
 /// that ends in the next target.
 enum class Move { joint, linear, via, circular };
@@ -25,6 +36,10 @@ struct Target {
     Waypoint at;
     Move move = Move::linear;
     std::size_t waypoint = 0;  ///< of the plan: the one it stands for, or heads for where a move was divided
+    /// Of the arm: Axes::air, where it stands at the end of a move along the axes, which then tells no pose; Axes::all,
+    /// on the way here and here.
+    std::vector<AxisPoint> axes{};
+    bool passed = false;  ///< as read: on the way, within what the language rounds corners by, and not stopped in
 };
 
 struct Program {
@@ -45,6 +60,7 @@ struct Format {
     double min_speed_mm_s;        ///< below it the written speed is off by more than 0.5 %
     bool joint_start;             ///< the first move is along the axes: where the robot comes from is not known
     bool arcs;                    ///< the language has circular moves
+    Axes axes;
     bool speeds;  ///< files tell speeds; a joint move's may be NaN, where it is a share of the axes' own
     Told (*told)(const ExportOptions&);
     std::vector<std::string> (*problems)(const ExportOptions&);  ///< as export_problems()
@@ -70,10 +86,13 @@ const Format& format(std::size_t robot);
 Told tells_everything(const ExportOptions&);
 std::vector<std::string> no_problems(const ExportOptions&);
 
+/// Gives the targets what the format tells of the plan's arm.
+void add_axes(Program& program, const Format& format, const ExportOptions& options);
+
 /// The plan's waypoints as moves of that format.
 Program program_of(const Plan& in_base, const Format& format, const ExportOptions& options);
 
-/// Largest difference of an orientation from the plan when it is read back.
+/// Largest difference of an orientation, and of an axis, from the plan when it is read back.
 inline constexpr double kMaxOrientationError_deg = 0.001;
 
 /// How far the plan's waypoints lie from the moves that pass them.
@@ -92,6 +111,7 @@ struct ReadBack {
     double max_position_error_mm = 0;
     double max_orientation_error_deg = 0;
     double max_speed_error = 0;
+    double max_axis_error_deg = 0;
 };
 
 /// Compares what was read with what was to be written. Throws InternalError naming the first waypoint that differs by

@@ -110,6 +110,10 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     text += pair("format", quote("seampath waypoints")) + ",\n";
     text += pair("frame", quote("robot base")) + ",\n";
     text += pair("base_from_scan", "[" + list(options.base_from_scan, ",") + "]") + ",\n";
+    for (const auto& [key, sigma] : {std::pair{"base_from_scan_sigma_mm", options.base_from_scan_sigma_mm},
+                                     std::pair{"base_from_scan_sigma_deg", options.base_from_scan_sigma_deg}}) {
+        text += sigma ? pair(key, *sigma) + ",\n" : "";
+    }
     text += pair("units", "{" + pair("length", quote("mm")) + "," + pair("speed", quote("mm/s")) + "," +
                               pair("time", quote("s")) + "}") +
             ",\n";
@@ -131,6 +135,9 @@ std::vector<Target> read(const std::vector<TextFile>& files) {
         scan.fail("the end of the file");
     }
     const Reader reader(scan);
+    reader.require(root, "format", "seampath waypoints");
+    reader.require(root, "frame", "robot base");
+    reader.require(root, "quaternion_order", "qw,qx,qy,qz");
     const Value& units = reader.member(root, "units");
     reader.require(units, "length", "mm");
     reader.require(units, "speed", "mm/s");
@@ -144,6 +151,7 @@ std::vector<Target> read(const std::vector<TextFile>& files) {
 
 }  // namespace
 
-constinit const Format kJson{"json", 0, kAnywhere, 0, false, false, true, tells_everything, no_problems, write, read};
+constinit const Format kJson{"json",     0,    kAnywhere,        0,           false, false,
+                             Axes::none, true, tells_everything, no_problems, write, read};
 
 }  // namespace seampath::exporting

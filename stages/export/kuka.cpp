@@ -8,9 +8,9 @@
 #include "stages/geometry/pose.hpp"
 
 /// KUKA KRL: a .src of moves and a .dat of their frames; above 1400 lines a main program and parts of whole welds.
-/// Positions in mm with 3 decimals, angles A, B, C of Rz(A) Ry(B) Rx(C) in deg with 4, speeds in m/s. LIN and CIRC with
-/// C_DIS along welds, or spline blocks. The arc is struck and ended by sub-programs of the user: what ArcTech's own
-/// inline forms hold depends on its version.
+/// Positions in mm with 3 decimals, angles A, B, C of Rz(A) Ry(B) Rx(C) in deg with 4, speeds in m/s. Through the air
+/// PTP to axis angles where the arm is known. LIN and CIRC with C_DIS along welds, or spline blocks. The arc is struck
+/// and ended by sub-programs of the user: what ArcTech's own inline forms hold depends on its version.
 namespace seampath::exporting {
 namespace {
 
@@ -43,6 +43,14 @@ std::string frame(const Waypoint& w) {
            degrees(abc[0], 4) + ",B " + degrees(abc[1], 4) + ",C " + degrees(abc[2], 4) + "}";
 }
 
+std::string axes(const AxisPoint& point) {
+    std::vector<std::string> parts = axis_degrees(point.q, 4);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i] = "A" + std::to_string(i + 1) + " " + parts[i];
+    }
+    return "{" + joined(parts, ",") + "}";
+}
+
 std::string metres_per_second(double mm_s) {
     // Nine digits are more than the controller's 24 bits hold.
     const int decimals = 8 - static_cast<int>(std::floor(std::log10(mm_s / 1000)));
@@ -63,7 +71,10 @@ public:
     void write(const Section& part) {
         for (std::size_t k = part.begin; k < part.end; ++k) {
             const Target& target = all_[k];
-            data += "DECL FRAME P" + std::to_string(count_) + "=" + frame(target.at) + "\n";
+            const std::string point = " P" + std::to_string(count_) + "=";
+            data += (target.axes.empty() ? "DECL FRAME" + point + frame(target.at)
+                                         : "DECL E6AXIS" + point + axes(target.axes.back())) +
+                    "\n";
             ++count_;
             if (target.move != Move::via) {
                 move(k);
@@ -150,6 +161,10 @@ Told told(const ExportOptions& options) {
 std::vector<std::string> problems(const ExportOptions& options) {
     std::vector<std::string> found =
         name_problems("program_name", options.program_name, kMaxProgramName, reserved(), "KRL");
+    if (is_numbered(lower(options.program_name), "p")) {
+        found.push_back("program_name: \"" + options.program_name +
+                        "\" is what the program's points are called; another name was needed");
+    }
     append(found, needed_number_problems("kuka_tool", options.kuka_tool, 1, 128, "number of a tool"));
     append(found, number_problems("kuka_base", options.kuka_base, 1, 128, "number of a base"));
     if (options.kuka_arc_on.empty() != options.kuka_arc_off.empty()) {
@@ -160,9 +175,13 @@ std::vector<std::string> problems(const ExportOptions& options) {
         append(found, name_problems("kuka_arc_off", options.kuka_arc_off, kMaxName, reserved(), "KRL"));
         const std::string on = lower(options.kuka_arc_on), off = lower(options.kuka_arc_off);
         const std::string program = lower(options.program_name);
-        if (on == off || on == program || off == program) {
+        const auto is_the_programs = [&](const std::string& name) {
+            return name == program || is_numbered(name, "p") || is_numbered(name, program + "_");
+        };
+        if (on == off || is_the_programs(on) || is_the_programs(off)) {
             found.push_back("kuka_arc_on: \"" + options.kuka_arc_on + "\", kuka_arc_off \"" + options.kuka_arc_off +
-                            "\" and program_name \"" + options.program_name + "\"; three different names were needed");
+                            "\" and program_name \"" + options.program_name +
+                            "\"; three different names were needed, and none as the program's points and parts have");
         }
     }
     return found;
@@ -204,7 +223,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kKuka{"kuka", kRounding_mm, kMaxCoordinate_mm, 0,     true,     true,
+constinit const Format kKuka{"kuka", kRounding_mm, kMaxCoordinate_mm, 0,     true,     true, Axes::air,
                              true,   told,         problems,          write, read_kuka};
 
 }  // namespace seampath::exporting

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -40,13 +41,24 @@ std::string variable(Scanner& scan) {
 // Lines beginning with & come first.
 void header(Scanner& scan) {
     while (scan.accept('&')) {
-        scan.to_line_end();
+        const std::string word = identifier(scan);
+        if (word == "access") {
+            identifier(scan);
+        } else if (word == "rel") {
+            scan.number();
+        } else if (word == "param") {
+            identifier(scan);
+            scan.expect('=');
+            scan.to_line_end();
+        } else {
+            scan.fail("ACCESS, REL or PARAM before this place");
+        }
         scan.end_line();
     }
 }
 
-// {X 1,Y 2,Z 3,A 4,B 5,C 6} is Rz(A) Ry(B) Rx(C).
-Waypoint frame(Scanner& scan) {
+// {X 1,Y 2,...}: six parts by their names.
+std::array<double, 6> aggregate(Scanner& scan, const std::array<const char*, 6>& names) {
     scan.expect('{');
     std::map<std::string, double> parts;
     do {
@@ -59,24 +71,30 @@ Waypoint frame(Scanner& scan) {
     if (parts.size() != 6) {
         scan.fail("six parts before this place");
     }
-    const auto part = [&](const char* name) {
-        const auto found = parts.find(name);
+    std::array<double, 6> result{};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto found = parts.find(names[i]);
         if (found == parts.end()) {
-            scan.fail(std::string("part ") + name + " before this place");
+            scan.fail(std::string("part ") + names[i] + " before this place");
         }
-        return found->second;
-    };
+        result[i] = found->second;
+    }
+    return result;
+}
+
+// {X 1,Y 2,Z 3,A 4,B 5,C 6} is Rz(A) Ry(B) Rx(C).
+Target frame(Scanner& scan) {
+    const auto [x, y, z, a, b, c] = aggregate(scan, {"x", "y", "z", "a", "b", "c"});
     Waypoint w;
-    w.p = {part("x"), part("y"), part("z")};
-    const double a = part("a"), b = part("b"), c = part("c");
+    w.p = {x, y, z};
     if (!(std::abs(a) <= 180 && std::abs(b) <= 90 && std::abs(c) <= 180)) {
         scan.fail("angles within 180, 90 and 180 deg before this place");
     }
     w.q = turned(a, b, c);
-    return w;
+    return {w};
 }
 
-using Frames = std::map<std::string, Waypoint>;
+using Frames = std::map<std::string, Target>;
 
 // DEFDAT name, declarations of a line each, ENDDAT.
 Frames data_list(const TextFile& file, const std::string& module) {
@@ -88,12 +106,15 @@ Frames data_list(const TextFile& file, const std::string& module) {
     scan.end_line();
     Frames frames;
     for (std::string word = identifier(scan); word != "enddat"; word = identifier(scan)) {
-        if (word != "decl" || identifier(scan) != "frame") {
-            scan.fail("DECL FRAME before this place");
+        const std::string type = word == "decl" ? identifier(scan) : "";
+        if (type != "frame" && type != "e6axis") {
+            scan.fail("DECL FRAME or DECL E6AXIS before this place");
         }
         const std::string name = identifier(scan);
         scan.expect('=');
-        frames[name] = frame(scan);
+        const Target target =
+            type == "frame" ? frame(scan) : axes_target(aggregate(scan, {"a1", "a2", "a3", "a4", "a5", "a6"}));
+        require(frames.emplace(name, target).second, scan, "each point once");
         scan.end_line();
     }
     scan.end_line();
@@ -247,7 +268,7 @@ private:
     void motion(Scanner& scan, const std::string& word, const Module& module) {
         require(initialised_ && tool_ && load_ && base_, scan, "BAS(#INITMOV,0), $TOOL, $LOAD and $BASE first");
         require((word[0] == 's') == spline_, scan, "SPLINE where spline segments stand, and only there,");
-        require(targets.empty() == (word == "ptp"), scan, "a first move along the axes, and no other,");
+        require(!targets.empty() || word == "ptp", scan, "a first move along the axes");
         const bool circular = word == "circ" || word == "scirc";
         if (circular) {
             require(even_ && even_on_arcs_, scan, "$ORI_TYPE and $CIRC_TYPE first");
@@ -268,6 +289,7 @@ private:
             expect_word(scan, "c_dis");
             require(approximation_, scan, "$APO.CDIS first");
             exact_ = false;
+            targets.back().passed = true;
         }
         targets.back().at.speed_mm_s = 1000 * speed;
         if (circular) {
@@ -278,7 +300,12 @@ private:
     void add(Scanner& scan, const Module& module, Move move) {
         const auto found = module.frames.find(identifier(scan));
         require(found != module.frames.end(), scan, "a frame of the .dat");
-        targets.push_back({found->second, move});
+        const bool axes = !found->second.axes.empty();
+        require(!axes || move == Move::joint, scan, "PTP to angles of axes");
+        require(axes || targets.empty() || move != Move::joint, scan, "angles of axes for a PTP behind the first");
+        require(!axes || arc_ == Arc::off, scan, "the arc off on a move along the axes");
+        targets.push_back(found->second);
+        targets.back().move = move;
         targets.back().at.kind = arc_ == Arc::on ? WaypointKind::weld : WaypointKind::air;
     }
 

@@ -158,7 +158,8 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kLinuxcnc{"linuxcnc", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,         false,
-                                 true,       told,         problems,          write,          read_linuxcnc, prepare};
+constinit const Format kLinuxcnc{
+    "linuxcnc", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,         false,  Axes::none,
+    true,       told,         problems,          write,          read_linuxcnc, prepare};
 
 }  // namespace seampath::exporting

@@ -128,6 +128,7 @@ private:
         target.at.p = {at_['X'], at_['Y'], at_['Z']};
         target.at.q = turned(at_['C'], at_['B'], at_['A']);
         target.at.speed_mm_s = at_['F'] / 60;
+        target.passed = !exact_;
         check_turn();
         targets.push_back(target);
         exact_end_ = exact_;

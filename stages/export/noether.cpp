@@ -47,7 +47,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kNoether{"noether", kRounding_mm, kAnywhere, 0,     false,        false,
+constinit const Format kNoether{"noether", kRounding_mm, kAnywhere, 0,     false,        false,  Axes::none,
                                 false,     told,         problems,  write, read_noether, prepare};
 
 }  // namespace seampath::exporting

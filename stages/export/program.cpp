@@ -72,6 +72,7 @@ Program program_of(const Plan& in_base, const Format& format, const ExportOption
     if (format.prepare != nullptr) {
         program.targets = format.prepare(std::move(program.targets));
     }
+    add_axes(program, format, options);
     return program;
 }
 

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <string>
 
+#include "stages/error.hpp"
 #include "stages/export/text.hpp"
 #include "stages/geometry/pose.hpp"
 
 /// ROS 2: the waypoints as geometry_msgs/PoseArray and, with times and velocities, as
-/// trajectory_msgs/MultiDOFJointTrajectory of the tool, each as YAML and in an MCAP bag; there also the arc, as
-/// std_msgs/Bool. Metres, quaternions x, y, z, w. A time stamp of 0, so that the YAML fits ROS 1 as well, says nothing
-/// of when. The way to the first pose is left to the planner.
+/// trajectory_msgs/MultiDOFJointTrajectory of the tool, and, where the plan has an arm, its axes all along as
+/// trajectory_msgs/JointTrajectory; each as YAML and in an MCAP bag, there also the arc, as std_msgs/Bool. Metres, rad,
+/// quaternions x, y, z, w. A time stamp of 0, so that the YAML fits ROS 1 as well, says nothing of when. The way to the
+/// first pose is left to the planner.
 namespace seampath::exporting {
 namespace {
 
@@ -22,7 +24,8 @@ std::string message(std::string_view type, std::string_view fields) {
     return text.append("\nMSG: ").append(type).append("\n").append(fields);
 }
 
-const std::vector<BagTopic>& topics() {
+std::vector<BagTopic> topics(bool with_axes) {
+    static const std::string duration = message("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n");
     static const std::string header = message("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n") +
                                       message("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n");
     static const std::string vector3 = message("geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n");
@@ -42,9 +45,15 @@ const std::vector<BagTopic>& topics() {
              message("geometry_msgs/Transform",
                      "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n") +
              message("geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n") + vector3 +
-             quaternion + message("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n")},
-        {"/seampath/arc", "std_msgs/msg/Bool", "bool data\n"}};
-    return all;
+             quaternion + duration},
+        {"/seampath/arc", "std_msgs/msg/Bool", "bool data\n"},
+        {"/seampath/joint_trajectory", "trajectory_msgs/msg/JointTrajectory",
+         "std_msgs/Header header\nstring[] joint_names\ntrajectory_msgs/JointTrajectoryPoint[] points\n" + header +
+             message("trajectory_msgs/JointTrajectoryPoint",
+                     "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\n"
+                     "builtin_interfaces/Duration time_from_start\n") +
+             duration}};
+    return {all.begin(), all.end() - (with_axes ? 0 : 1)};
 }
 
 // A waypoint as the trajectory has it: SI units.
@@ -104,6 +113,30 @@ std::string trajectory_yaml(const std::string& head, const std::vector<Point>& p
                 "}], velocities: [{linear: " + map_of(point.linear) + ", angular: " + map_of(point.angular) +
                 "}], accelerations: [], time_from_start: {sec: " + std::to_string(point.time_ns / kSecond) +
                 ", nanosec: " + std::to_string(point.time_ns % kSecond) + "}}\n";
+    }
+    return text;
+}
+
+std::int64_t nanoseconds(const AxisPoint& point) {
+    return std::llround(point.time_s * 1e9);
+}
+
+std::string list_of(const std::array<double, 6>& values) {
+    std::vector<std::string> texts;
+    for (const double value : values) {
+        texts.push_back(fixed(value, 12));
+    }
+    return "[" + joined(texts, ", ") + "]";
+}
+
+std::string joints_yaml(const std::string& head, const std::vector<std::string>& joints,
+                        const std::vector<AxisPoint>& travel) {
+    std::string text = head + "joint_names: [" + joined(joints, ", ") + "]\npoints:\n";
+    for (const AxisPoint& point : travel) {
+        const std::int64_t ns = nanoseconds(point);
+        text += "- {positions: " + list_of(point.q) + ", velocities: " + list_of(point.dq) +
+                ", accelerations: [], effort: [], time_from_start: {sec: " + std::to_string(ns / kSecond) +
+                ", nanosec: " + std::to_string(ns % kSecond) + "}}\n";
     }
     return text;
 }
@@ -171,14 +204,39 @@ std::string trajectory_cdr(const std::string& frame, const std::vector<Point>& p
     return cdr.data;
 }
 
+std::string joints_cdr(const std::string& frame, const std::vector<std::string>& joints,
+                       const std::vector<AxisPoint>& travel) {
+    Cdr cdr;
+    cdr.header(frame);
+    cdr.size(joints.size());
+    for (const std::string& joint : joints) {
+        cdr.text(joint);
+    }
+    cdr.size(travel.size());
+    for (const AxisPoint& point : travel) {
+        for (const auto& values : {point.q, point.dq}) {
+            cdr.size(values.size());
+            for (const double value : values) {
+                cdr.number(value);
+            }
+        }
+        cdr.size(0);
+        cdr.size(0);
+        const std::int64_t ns = nanoseconds(point);
+        cdr.number(static_cast<std::int32_t>(ns / kSecond));
+        cdr.number(static_cast<std::uint32_t>(ns % kSecond));
+    }
+    return cdr.data;
+}
+
 std::string bool_cdr(bool value) {
     Cdr cdr;
     cdr.number(static_cast<std::uint8_t>(value ? 1 : 0));
     return cdr.data;
 }
 
-std::string bag(const std::string& frame, const std::vector<Target>& targets, const std::vector<Point>& points) {
-    std::vector<BagMessage> messages{{0, 0, poses_cdr(frame, points)}, {1, 0, trajectory_cdr(frame, points)}};
+// The arc's changes, at the times of the trajectories.
+void add_arc(std::vector<BagMessage>& messages, const std::vector<Target>& targets, const std::vector<Point>& points) {
     for (std::size_t k = 0; k < targets.size(); ++k) {
         const WaypointKind kind = targets[k].at.kind;
         if (kind == WaypointKind::weld_start || kind == WaypointKind::weld_end) {
@@ -186,7 +244,24 @@ std::string bag(const std::string& frame, const std::vector<Target>& targets, co
                 {2, static_cast<std::uint64_t>(points[k].time_ns), bool_cdr(kind == WaypointKind::weld_start)});
         }
     }
-    return write_mcap(topics(), messages);
+}
+
+bool is_name(std::string name) {
+    std::replace(name.begin(), name.end(), '/', '_');
+    return is_identifier(name);
+}
+
+// Between commas; blanks around them do not count.
+std::vector<std::string> names_of(const std::string& list) {
+    std::vector<std::string> names(1);
+    for (const char c : list) {
+        if (c == ',') {
+            names.emplace_back();
+        } else if (c != ' ') {
+            names.back() += c;
+        }
+    }
+    return names;
 }
 
 Told told(const ExportOptions&) {
@@ -195,11 +270,15 @@ Told told(const ExportOptions&) {
 
 std::vector<std::string> problems(const ExportOptions& options) {
     std::vector<std::string> found = name_problems("program_name", options.program_name, kMaxName, {}, "ROS");
-    std::string plain_name = options.ros_frame;
-    std::replace(plain_name.begin(), plain_name.end(), '/', '_');
-    if (!is_identifier(plain_name)) {
+    if (!is_name(options.ros_frame)) {
         found.push_back("ros_frame: \"" + options.ros_frame +
                         "\" is no frame; a letter was needed, then letters, digits, underscores and slashes");
+    }
+    const std::vector<std::string> joints = names_of(options.arm_joints);
+    if (!options.arm_joints.empty() && !(joints.size() == 6 && std::all_of(joints.begin(), joints.end(), is_name))) {
+        found.push_back("arm_joints: \"" + options.arm_joints +
+                        "\" are no joints; six names of letters, digits, underscores and slashes were needed, with "
+                        "commas between them");
     }
     return found;
 }
@@ -212,13 +291,31 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     }
     head += "header: {frame_id: " + options.ros_frame + "}\n";
     const std::string& name = options.program_name;
-    return {{name + "_poses.yaml", poses_yaml(head, points)},
-            {name + "_trajectory.yaml", trajectory_yaml(head, points)},
-            {name + ".mcap", bag(options.ros_frame, program.targets, points)}};
+    std::vector<TextFile> files{{name + "_poses.yaml", poses_yaml(head, points)},
+                                {name + "_trajectory.yaml", trajectory_yaml(head, points)}};
+    const std::string& frame = options.ros_frame;
+    std::vector<BagMessage> messages{{0, 0, poses_cdr(frame, points)}, {1, 0, trajectory_cdr(frame, points)}};
+    std::vector<AxisPoint> travel;
+    for (const Target& target : program.targets) {
+        travel.insert(travel.end(), target.axes.begin(), target.axes.end());
+    }
+    if (!travel.empty()) {
+        if (options.arm_joints.empty()) {
+            throw InputError(
+                "export: ros: the plan has an arm whose joints have no names; six were needed; set export.arm_joints");
+        }
+        const std::vector<std::string> joints = names_of(options.arm_joints);
+        files.push_back({name + "_joints.yaml", joints_yaml(head, joints, travel)});
+        messages.push_back({3, 0, joints_cdr(frame, joints, travel)});
+    }
+    add_arc(messages, program.targets, points);
+    files.push_back({name + ".mcap", write_mcap(topics(!travel.empty()), messages)});
+    return files;
 }
 
 }  // namespace
 
-constinit const Format kRos{"ros", kRounding_mm, kAnywhere, 1e-6, true, false, true, told, problems, write, read_ros};
+constinit const Format kRos{"ros",     kRounding_mm, kAnywhere, 1e-6,     true,  false,
+                            Axes::all, true,         told,      problems, write, read_ros};
 
 }  // namespace seampath::exporting

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -7,84 +9,13 @@
 #include "stages/error.hpp"
 #include "stages/export/ros.hpp"
 #include "stages/export/text.hpp"
+#include "stages/export/yaml.hpp"
 
 /// Reads what subscribers would get: both messages from YAML (maps, lists, numbers and words) and from the bag by the
 /// fields of their types, which must agree; times of the arc from the bag. Speeds are the trajectory's velocities, and
 /// must be what lengths and times say.
 namespace seampath::exporting {
 namespace {
-
-// YAML in flow style: a number, a word, a map or a list.
-struct Value {
-    double number = std::numeric_limits<double>::quiet_NaN();
-    std::string word;
-    std::map<std::string, Value> members;
-    std::vector<Value> items;
-
-    const Value& operator[](const std::string& name) const {
-        const auto found = members.find(name);
-        if (found == members.end()) {
-            throw InternalError("export: ros: a field " + name + " was needed");
-        }
-        return found->second;
-    }
-};
-
-std::string path_word(Scanner& scan) {
-    std::string word = scan.name();
-    while (scan.accept('/')) {
-        word += "/" + scan.name();
-    }
-    return word;
-}
-
-Value value(Scanner& scan) {
-    Value result;
-    if (scan.accept('{')) {
-        do {
-            const std::string name = scan.name();
-            scan.expect(':');
-            if (!result.members.emplace(name, value(scan)).second) {
-                scan.fail("each field once before this place");
-            }
-        } while (scan.accept(','));
-        scan.expect('}');
-    } else if (scan.accept('[')) {
-        if (!scan.accept(']')) {
-            do {
-                result.items.push_back(value(scan));
-            } while (scan.accept(','));
-            scan.expect(']');
-        }
-    } else if (scan.at_name()) {
-        result.word = path_word(scan);
-    } else {
-        result.number = scan.decimal();
-    }
-    return result;
-}
-
-// Keys at the margin, each with a value or a list of lines that begin with a dash.
-Value document(const TextFile& file) {
-    Scanner scan(file, '#');
-    Value root;
-    while (!scan.done()) {
-        const std::string name = scan.name();
-        scan.expect(':');
-        Value member;
-        if (scan.accept('-')) {
-            do {
-                member.items.push_back(value(scan));
-            } while (scan.accept('-'));
-        } else {
-            member = value(scan);
-        }
-        if (!root.members.emplace(name, member).second) {
-            scan.fail("each field once before this place");
-        }
-    }
-    return root;
-}
 
 struct Pose {
     Eigen::Vector3d p;
@@ -101,6 +32,8 @@ struct Messages {
     std::string frame;
     std::vector<Pose> poses;
     std::vector<Point> points;
+    std::vector<std::string> joints;  // of the arm, where there is one
+    std::vector<AxisPoint> travel;
 };
 
 void require(bool holds, const std::string& needed) {
@@ -109,41 +42,67 @@ void require(bool holds, const std::string& needed) {
     }
 }
 
-Eigen::Vector3d vector_of(const Value& v) {
+Eigen::Vector3d vector_of(const Yaml& v) {
     require(v.members.size() == 3, "three fields of a vector");
     return {v["x"].number, v["y"].number, v["z"].number};
 }
 
-Eigen::Quaterniond quaternion_of(const Value& v) {
+Eigen::Quaterniond quaternion_of(const Yaml& v) {
     require(v.members.size() == 4, "four fields of a quaternion");
     return {v["w"].number, v["x"].number, v["y"].number, v["z"].number};
 }
 
-const Value& only(const Value& list) {
+const Yaml& only(const Yaml& list) {
     require(list.items.size() == 1, "one joint");
     return list.items.front();
 }
 
+double time_of(const Yaml& duration) {
+    const double sec = duration["sec"].number, nanosec = duration["nanosec"].number;
+    require(sec == std::floor(sec) && nanosec == std::floor(nanosec) && nanosec >= 0 && nanosec < 1e9,
+            "whole seconds and nanoseconds");
+    return sec + 1e-9 * nanosec;
+}
+
+std::array<double, 6> six_of(const Yaml& list) {
+    require(list.items.size() == 6, "six axes");
+    std::array<double, 6> values{};
+    std::transform(list.items.begin(), list.items.end(), values.begin(), [](const Yaml& v) { return v.number; });
+    return values;
+}
+
+void add_joints(const TextFile& file, Messages& to) {
+    const Yaml way = yaml_document(file);
+    require(way.members.size() == 3 && way["header"]["frame_id"].word == to.frame,
+            "one frame, and the fields of the message and no others");
+    for (const Yaml& name : way["joint_names"].items) {
+        to.joints.push_back(name.word);
+    }
+    for (const Yaml& point : way["points"].items) {
+        require(point.members.size() == 5 && point["accelerations"].items.empty() && point["effort"].items.empty(),
+                "positions, velocities and times, and empty accelerations and efforts");
+        to.travel.push_back(
+            {time_of(point["time_from_start"]), six_of(point["positions"]), six_of(point["velocities"])});
+    }
+}
+
 Messages from_yaml(const TextFile& poses, const TextFile& trajectory) {
-    const Value array = document(poses), way = document(trajectory);
+    const Yaml array = yaml_document(poses), way = yaml_document(trajectory);
     require(array.members.size() == 2 && way.members.size() == 3, "the fields of the messages and no others");
     Messages result;
     result.frame = array["header"]["frame_id"].word;
     require(way["header"]["frame_id"].word == result.frame && only(way["joint_names"]).word == "tool",
             "one frame, and the joint \"tool\"");
-    for (const Value& pose : array["poses"].items) {
+    for (const Yaml& pose : array["poses"].items) {
         result.poses.push_back({vector_of(pose["position"]), quaternion_of(pose["orientation"])});
     }
-    for (const Value& point : way["points"].items) {
-        const Value &transform = only(point["transforms"]), &twist = only(point["velocities"]);
+    for (const Yaml& point : way["points"].items) {
+        const Yaml &transform = only(point["transforms"]), &twist = only(point["velocities"]);
         require(point["accelerations"].items.empty(), "no accelerations");
         vector_of(twist["angular"]);
-        const double sec = point["time_from_start"]["sec"].number, nanosec = point["time_from_start"]["nanosec"].number;
-        require(sec == std::floor(sec) && nanosec == std::floor(nanosec) && nanosec >= 0 && nanosec < 1e9,
-                "whole seconds and nanoseconds");
         result.points.push_back({{vector_of(transform["translation"]), quaternion_of(transform["rotation"])},
                                  vector_of(twist["linear"]),
-                                 sec + 1e-9 * nanosec});
+                                 time_of(point["time_from_start"])});
     }
     return result;
 }
@@ -181,6 +140,18 @@ public:
         const double x = number<double>(), y = number<double>(), z = number<double>(), w = number<double>();
         return {w, x, y, z};
     }
+    std::array<double, 6> six() {
+        require(number<std::uint32_t>() == 6, "six axes");
+        std::array<double, 6> values{};
+        for (double& value : values) {
+            value = number<double>();
+        }
+        return values;
+    }
+    double time() {
+        const auto sec = number<std::int32_t>();
+        return sec + 1e-9 * number<std::uint32_t>();
+    }
     std::string header() {
         number<std::int32_t>();
         number<std::uint32_t>();
@@ -194,11 +165,29 @@ private:
     std::size_t at_ = 4;
 };
 
+void add_joints(const std::string& message, Messages& to) {
+    Cdr way(message);
+    require(way.header() == to.frame, "one frame");
+    for (auto left = way.number<std::uint32_t>(); left > 0; --left) {
+        to.joints.push_back(way.text());
+    }
+    for (auto left = way.number<std::uint32_t>(); left > 0; --left) {
+        AxisPoint point;
+        point.q = way.six();
+        point.dq = way.six();
+        require(way.number<std::uint32_t>() == 0 && way.number<std::uint32_t>() == 0, "no accelerations and efforts");
+        point.time_s = way.time();
+        to.travel.push_back(point);
+    }
+    way.end();
+}
+
 Messages from_bag(const Bag& bag) {
-    require(bag.topics.size() == 3 && bag.topics[0].type == "geometry_msgs/msg/PoseArray" &&
+    const bool arm = bag.topics.size() == 4 && bag.topics[3].type == "trajectory_msgs/msg/JointTrajectory";
+    require((bag.topics.size() == 3 || arm) && bag.topics[0].type == "geometry_msgs/msg/PoseArray" &&
                 bag.topics[1].type == "trajectory_msgs/msg/MultiDOFJointTrajectory" &&
                 bag.topics[2].type == "std_msgs/msg/Bool",
-            "topics of poses, trajectory and arc");
+            "topics of poses, trajectory, arc and, of an arm, its trajectory");
     require(bag.messages.size() >= 2 && bag.messages[0].channel == 0 && bag.messages[1].channel == 1,
             "poses and trajectory first");
     Messages result;
@@ -221,11 +210,14 @@ Messages from_bag(const Bag& bag) {
         point.linear = way.vector();
         way.vector();
         require(way.number<std::uint32_t>() == 0, "no accelerations");
-        point.time_s = way.number<std::int32_t>();
-        point.time_s += 1e-9 * way.number<std::uint32_t>();
+        point.time_s = way.time();
         result.points.push_back(point);
     }
     way.end();
+    if (arm) {
+        require(bag.messages.size() >= 3 && bag.messages[2].channel == 3, "the arm's trajectory third");
+        add_joints(bag.messages[2].data, result);
+    }
     return result;
 }
 
@@ -244,6 +236,15 @@ void require_same(const Messages& yaml, const Messages& bag) {
         require((a.linear - b.linear).norm() <= 1e-11 && std::abs(a.time_s - b.time_s) <= 1e-9,
                 "the same speed and time " + std::to_string(k) + " in all messages");
     }
+    require(yaml.joints == bag.joints && yaml.travel.size() == bag.travel.size(), "one arm, and as many points of it");
+    for (std::size_t k = 0; k < yaml.travel.size(); ++k) {
+        const AxisPoint &a = yaml.travel[k], &b = bag.travel[k];
+        bool equal = std::abs(a.time_s - b.time_s) <= 1e-9;
+        for (std::size_t i = 0; i < a.q.size(); ++i) {
+            equal = equal && std::abs(a.q[i] - b.q[i]) <= 1e-12 && std::abs(a.dq[i] - b.dq[i]) <= 1e-12;
+        }
+        require(equal, "the same axes " + std::to_string(k) + " in both messages");
+    }
 }
 
 // What lengths and times say, where there is enough of both to tell.
@@ -255,15 +256,35 @@ void require_speed(const Point& from, const Point& to) {
     }
 }
 
+// The arm's points up to each of the tool's, at whose time the last of them is.
+void share_travel(const std::vector<AxisPoint>& travel, const std::vector<Point>& points,
+                  std::vector<Target>& targets) {
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < points.size() && !travel.empty(); ++k) {
+        for (bool there = false; !there; ++next) {
+            require(next < travel.size() && travel[next].time_s <= points[k].time_s &&
+                        (next == 0 || travel[next].time_s > travel[next - 1].time_s),
+                    "the arm at every pose when the tool is, and times that go on");
+            targets[k].axes.push_back(travel[next]);
+            there = travel[next].time_s == points[k].time_s;
+        }
+    }
+    require(next == travel.size(), "the arm's end with the tool's");
+}
+
 }  // namespace
 
 std::vector<Target> read_ros(const std::vector<TextFile>& files) {
-    require(files.size() == 3, "three files");
-    const Messages yaml = from_yaml(files[0], files[1]);
-    const Bag bag = read_mcap(files[2].text, files[2].name);
+    require(files.size() == 3 || files.size() == 4, "three files, or four with an arm");
+    Messages yaml = from_yaml(files[0], files[1]);
+    if (files.size() == 4) {
+        add_joints(files[2], yaml);
+        require(yaml.joints.size() == 6 && !yaml.travel.empty(), "the names of six joints, and points");
+    }
+    const Bag bag = read_mcap(files.back().text, files.back().name);
     require_same(yaml, from_bag(bag));
     std::vector<Target> targets;
-    std::size_t event = 2;
+    std::size_t event = files.size() - 1;
     bool arc = false;
     for (std::size_t k = 0; k < yaml.points.size(); ++k) {
         const Point& point = yaml.points[k];
@@ -290,6 +311,7 @@ std::vector<Target> read_ros(const std::vector<TextFile>& files) {
         targets.push_back(target);
     }
     require(event == bag.messages.size() && !arc, "the arc to change at poses, and to end");
+    share_travel(yaml.travel, yaml.points, targets);
     return targets;
 }
 

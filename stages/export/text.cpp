@@ -25,6 +25,13 @@ bool is_part_of_name(char c) {
     return is_letter(c) || is_digit(c) || c == '_';
 }
 
+// Names from other files may be in any encoding; programs are ASCII.
+std::string ascii(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
+}
+
 }  // namespace
 
 std::string place(const Waypoint& waypoint) {
@@ -41,12 +48,28 @@ std::string degrees(double rad, int decimals) {
     return text == fixed(-180, decimals) ? text.substr(1) : text;
 }
 
-std::string list(const std::vector<double>& values, std::string_view separator) {
+std::vector<std::string> axis_degrees(const std::array<double, 6>& q, int decimals) {
+    std::vector<std::string> texts;
+    for (const double rad : q) {
+        texts.push_back(fixed(180 / std::numbers::pi * rad, decimals));
+    }
+    return texts;
+}
+
+std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
     std::string text;
-    for (const double value : values) {
-        text += (text.empty() ? "" : std::string(separator)) + shortest(value);
+    for (const std::string& part : parts) {
+        text += (&part == &parts.front() ? "" : std::string(separator)) + part;
     }
     return text;
+}
+
+std::string list(const std::vector<double>& values, std::string_view separator) {
+    std::vector<std::string> texts;
+    for (const double value : values) {
+        texts.push_back(shortest(value));
+    }
+    return joined(texts, separator);
 }
 
 std::string lower(std::string_view text) {
@@ -59,6 +82,11 @@ std::string lower(std::string_view text) {
 
 bool is_identifier(std::string_view text) {
     return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), is_part_of_name);
+}
+
+bool is_numbered(std::string_view name, std::string_view stem) {
+    return name.size() > stem.size() && name.starts_with(stem) &&
+           std::all_of(name.begin() + static_cast<std::ptrdiff_t>(stem.size()), name.end(), is_digit);
 }
 
 std::vector<std::string> name_problems(std::string_view key, const std::string& value, std::size_t longest,
@@ -157,6 +185,10 @@ std::vector<std::string> preamble(const Program& program, const ExportOptions& o
         "Moves stay within " + fixed(std::ceil(program.deviation_mm * 1e4) / 1e4, 4) + " mm of the seam."};
     if (!sigma.empty()) {
         lines.insert(lines.begin() + 2, "1-sigma of base_from_scan:" + sigma + ".");
+    }
+    const auto by_axes = [](const Target& target) { return !target.axes.empty(); };
+    if (std::any_of(program.targets.begin(), program.targets.end(), by_axes)) {
+        lines.push_back("Axes are those of " + ascii(program.plan.arm->arm) + " standing in that base.");
     }
     if (rounding_mm > 0) {
         lines.push_back("Positions are rounded by up to " + plain(rounding_mm) + " mm.");

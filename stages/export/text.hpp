@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -25,6 +26,12 @@ std::string plain(double value);
 /// An angle in rad as degrees with so many decimals, above -180 where it is written.
 std::string degrees(double rad, int decimals);
 
+/// Angles of an arm's axes in rad as degrees with so many decimals; whole turns and signs are theirs to keep.
+std::vector<std::string> axis_degrees(const std::array<double, 6>& q, int decimals);
+
+/// "a,b,c"
+std::string joined(const std::vector<std::string>& parts, std::string_view separator);
+
 /// "a,b,c" of shortest numbers.
 std::string list(const std::vector<double>& values, std::string_view separator);
 
@@ -32,6 +39,9 @@ std::string lower(std::string_view text);
 
 /// [A-Za-z][A-Za-z0-9_]*
 bool is_identifier(std::string_view text);
+
+/// `stem` and a number: "speed12".
+bool is_numbered(std::string_view name, std::string_view stem);
 
 /// "key: "value" is ...": why `value` is no name of at most `longest` characters outside `reserved` (lower case), or
 /// nothing.
@@ -103,6 +113,20 @@ inline void require(bool holds, const Scanner& place, const std::string& needed)
     if (!holds) {
         place.fail(needed + " before this place");
     }
+}
+
+/// A move along the axes to these angles, deg; where that puts the tool the file does not tell.
+inline Target axes_target(const std::array<double, 6>& q_deg) {
+    Target target;
+    target.move = Move::joint;
+    target.at.kind = WaypointKind::air;
+    target.at.p.setConstant(std::numeric_limits<double>::quiet_NaN());
+    target.at.speed_mm_s = std::numeric_limits<double>::quiet_NaN();
+    target.axes.resize(1);
+    for (std::size_t i = 0; i < q_deg.size(); ++i) {
+        target.axes[0].q[i] = std::numbers::pi / 180 * q_deg[i];
+    }
+    return target;
 }
 
 /// Rz(z) Ry(y) Rx(x), deg.

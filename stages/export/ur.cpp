@@ -9,7 +9,7 @@
 
 /// Universal Robots URScript: one function of moves in the base frame. Metres and rotation vectors in rad with 6
 /// decimals, m/s with 6. Weld points are movep (constant tool speed) and movec, with blends that can't overlap; all
-/// else is movel.
+/// else is movel, and through the air movej where the arm is known.
 namespace seampath::exporting {
 namespace {
 
@@ -18,8 +18,9 @@ constexpr double kRounding_mm = 0.0005;
 constexpr double kMaxCoordinate_mm = 10000;  // no robot of theirs reaches that far
 constexpr double kMinSpeed_mm_s = 0.1;       // speeds have a micron a second
 
-// URScript's own default, m/s^2.
+// URScript's own defaults, m/s^2.
 constexpr double kAcceleration = 1.2;
+constexpr double kAxisAcceleration = 1.4;  // rad/s^2
 
 // The controller skips a move whose blend overlaps its neighbour's: a blend takes at most this share of the shorter
 // neighbour, at most that much, and none below a hundredth of a millimetre.
@@ -67,6 +68,17 @@ double blend_mm(const Waypoint& before, const Waypoint& w, const Waypoint& after
     return blend < kMinBlend_mm ? 0 : blend;
 }
 
+// Along the axes: v is the speed of the one that turns most, of which every axis must be capable.
+std::string axes_move(const Target& target, const ArmTravel& arm, const ExportOptions& options) {
+    const double slowest = *std::min_element(arm.max_speed.begin(), arm.max_speed.end());
+    std::vector<std::string> q;
+    for (const double rad : target.axes.back().q) {
+        q.push_back(fixed(rad, 6));
+    }
+    return "  movej([" + joined(q, ", ") + "], a=" + plain(kAxisAcceleration) +
+           ", v=" + fixed(slowest * options.joint_speed_percent / 100, 6) + ")\n";
+}
+
 std::string move(const std::vector<Target>& all, std::size_t k) {
     const Waypoint& w = all[k].at;
     const bool circular = all[k].move == Move::circular;
@@ -110,7 +122,9 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
         text += "  # " + line + "\n";
     }
     text += "  # Units: m, rad, m/s; poses are position and rotation vector.\n";
-    text += "  # The first move is straight from where the robot stands.\n";
+    if (program.targets.front().axes.empty()) {
+        text += "  # The first move is straight from where the robot stands.\n";
+    }
     const auto& tcp = options.ur_tcp;
     text += "  set_tcp(" + pose({tcp[0], tcp[1], tcp[2]}, {tcp[3], tcp[4], tcp[5]}) + ")\n";
     if (options.ur_arc_output) {
@@ -122,7 +136,9 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
         if (k == 0 || w.seam != all[k - 1].at.seam) {
             text += "  # seam " + std::to_string(w.seam) + "\n";
         }
-        if (all[k].move != Move::via) {
+        if (!all[k].axes.empty()) {
+            text += axes_move(all[k], *program.plan.arm, options);
+        } else if (all[k].move != Move::via) {
             text += move(all, k);
         }
         if (w.kind == WaypointKind::weld_start) {
@@ -136,7 +152,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kUr{"ur", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,  true,
+constinit const Format kUr{"ur", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,  true, Axes::air,
                            true, told,         problems,          write,          read_ur};
 
 }  // namespace seampath::exporting

@@ -1,5 +1,7 @@
+#include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "stages/export/text.hpp"
@@ -11,6 +13,7 @@ namespace {
 
 struct Value {
     std::vector<double> pose;  // of p[...], or empty
+    std::vector<double> axes;  // of [...], or empty
     double number = 0;
     std::string word;  // True or False, or empty
 };
@@ -21,17 +24,24 @@ struct Call {
     std::map<std::string, Value> named;
 };
 
+// Behind the opening bracket.
+std::vector<double> six_numbers(Scanner& scan) {
+    std::vector<double> numbers;
+    do {
+        numbers.push_back(scan.number());
+    } while (scan.accept(','));
+    scan.expect(']');
+    if (numbers.size() != 6) {
+        scan.fail("six numbers before this place");
+    }
+    return numbers;
+}
+
 Value value_after_name(Scanner& scan, const std::string& name) {
     Value result;
     if (name == "p") {
         scan.expect('[');
-        do {
-            result.pose.push_back(scan.number());
-        } while (scan.accept(','));
-        scan.expect(']');
-        if (result.pose.size() != 6) {
-            scan.fail("a pose of six numbers before this place");
-        }
+        result.pose = six_numbers(scan);
     } else if (name == "True" || name == "False") {
         result.word = name;
     } else {
@@ -45,7 +55,11 @@ Value value(Scanner& scan) {
         return value_after_name(scan, scan.name());
     }
     Value result;
-    result.number = scan.number();
+    if (scan.accept('[')) {
+        result.axes = six_numbers(scan);
+    } else {
+        result.number = scan.number();
+    }
     return result;
 }
 
@@ -111,6 +125,8 @@ private:
         } else if (c.name == "set_standard_digital_out") {
             require(c.positional.size() == 2 && !c.positional[1].word.empty(), "the number of an output and its state");
             output(c.positional[1].word == "True");
+        } else if (c.name == "movej") {
+            axes_move(c);
         } else if (c.name == "movel" || c.name == "movep" || c.name == "movec") {
             move(c);
         } else {
@@ -126,6 +142,22 @@ private:
             targets.back().at.kind = on ? WaypointKind::weld_start : WaypointKind::weld_end;
         }
         arc_ = on;
+    }
+
+    // movej(q, a=1.4, v=1.05, t=0, r=0), rad and rad/s.
+    void axes_move(const Call& c) {
+        require(tcp_ && !arc_, "set_tcp, and the output off,");
+        require(c.positional.size() == 1 && c.positional[0].axes.size() == 6, "the angles of the axes");
+        for (const auto& [name, given] : c.named) {
+            require((name == "a" || name == "v") && given.number > 0, "only a and v, above 0,");
+        }
+        std::array<double, 6> q_deg{};
+        for (std::size_t i = 0; i < q_deg.size(); ++i) {
+            q_deg[i] = 180 / std::numbers::pi * c.positional[0].axes[i];
+            require(std::abs(q_deg[i]) <= 363, "angles within the joints' limits");
+        }
+        targets.push_back(axes_target(q_deg));
+        blends_.push_back(0);
     }
 
     // movel(pose, a=1.2, v=0.25, t=0, r=0), movep(pose, a=1.2, v=0.25, r=0), movec(via, to, a=1.2, v=0.25, r=0, mode=0)
@@ -155,6 +187,7 @@ private:
             target.at.speed_mm_s = 1000 * named("v", 0.25);
             targets.push_back(target);
             blends_.push_back(k + 1 < points ? 0 : 1000 * named("r", 0));
+            targets.back().passed = blends_.back() > 0;
         }
     }
 

@@ -11,7 +11,8 @@
 /// Yaskawa INFORM: relative jobs (.jbi) of cartesian positions, mm with 3 decimals and angles Rx, Ry, Rz of
 /// Rz(Rz) Ry(Ry) Rx(Rx) in deg with 4, as YRC1000 has them. What V= means is a parameter of the controller, so that the
 /// unit is the user's to tell. A circular step is three MOVC, the first where the robot stands; a MOVL on the spot
-/// parts two of them. Arc and weaving by file numbers. Above 2000 lines a main job and parts of whole welds.
+/// parts two of them. Through the air pulses where the arm is known. Arc and weaving by file numbers. Above 2000 lines
+/// a main job and parts of whole welds.
 namespace seampath::exporting {
 namespace {
 
@@ -21,6 +22,7 @@ constexpr std::size_t kMaxComment = 30;
 constexpr double kRounding_mm = 0.0005;
 constexpr double kMaxCoordinate_mm = 8388.607;
 constexpr double kMaxSpeedRounding = 0.0049;
+constexpr double kLeastPulses_per_deg = 500;  // half a pulse is a thousandth of a degree at most
 
 struct Unit {
     std::string_view name;
@@ -54,6 +56,15 @@ std::string speed(const Target& target, const ExportOptions& options) {
     return " V=" + fixed(exact, unit.decimals);
 }
 
+// Pulses of the axes' encoders.
+std::string pulses(const AxisPoint& axes, const ExportOptions& options) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < axes.q.size(); ++i) {
+        parts.push_back(fixed(180 / std::numbers::pi * axes.q[i] * options.yaskawa_pulses_per_deg[i], 0));
+    }
+    return joined(parts, ",");
+}
+
 // Instructions and positions of one part.
 class Writer {
 public:
@@ -70,9 +81,9 @@ public:
             if (target.move == Move::via) {
                 // Back to where the robot stands.
                 if (circular_) {
-                    step("MOVL", all_[k - 1].at, speed(target, options_));
+                    step("MOVL", all_[k - 1], speed(target, options_));
                 }
-                step("MOVC", all_[k - 1].at, speed(target, options_));
+                step("MOVC", all_[k - 1], speed(target, options_));
             }
             move(target);
             process(target.at.kind);
@@ -82,25 +93,46 @@ public:
     std::size_t lines = 0, points = 0;
 
 private:
-    void step(const std::string& instruction, const Waypoint& to, const std::string& how) {
-        const Eigen::Vector3d zyx = euler_zyx(to.q);
+    void step(const std::string& instruction, const Target& to, const std::string& how) {
         std::string number = std::to_string(points);
         number.insert(0, 5 - std::min<std::size_t>(5, number.size()), '0');
         ++points;
-        positions += "C" + number + "=" + fixed(to.p.x(), 3) + "," + fixed(to.p.y(), 3) + "," + fixed(to.p.z(), 3) +
-                     "," + degrees(zyx[2], 4) + "," + degrees(zyx[1], 4) + "," + degrees(zyx[0], 4) + "\n";
+        const bool by_axes = !to.axes.empty();
+        if (points == 1 || by_axes != by_axes_) {
+            positions += by_axes ? pulse_heading() : pose_heading();
+            by_axes_ = by_axes;
+        }
+        positions += "C" + number + "=" + (by_axes ? pulses(to.axes.back(), options_) : pose(to.at)) + "\n";
         line(instruction + " C" + number + how);
+    }
+
+    static std::string pose(const Waypoint& w) {
+        const Eigen::Vector3d zyx = euler_zyx(w.q);
+        return fixed(w.p.x(), 3) + "," + fixed(w.p.y(), 3) + "," + fixed(w.p.z(), 3) + "," + degrees(zyx[2], 4) + "," +
+               degrees(zyx[1], 4) + "," + degrees(zyx[0], 4);
+    }
+
+    std::string pulse_heading() const {
+        return "///TOOL " + plain(*options_.yaskawa_tool) + "\n///POSTYPE PULSE\n///PULSE\n";
+    }
+
+    std::string pose_heading() const {
+        const auto& user = options_.yaskawa_user_frame;
+        return (user ? "///USER " + plain(*user) + "\n" : "") + "///TOOL " + plain(*options_.yaskawa_tool) +
+               "\n///POSTYPE " + (user ? "USER" : "BASE") + "\n///RECTAN\n///RCONF " + options_.yaskawa_configuration +
+               "\n";
     }
 
     void move(const Target& target) {
         if (target.move == Move::joint) {
-            step("MOVJ", target.at, " VJ=" + fixed(options_.joint_speed_percent, 2));
+            circular_ = false;
+            step("MOVJ", target, " VJ=" + fixed(options_.joint_speed_percent, 2));
             return;
         }
         circular_ = target.move != Move::linear;
         // PL=0 stops in the point; along a weld PL=1 is the least rounding.
         const bool stops = target.at.kind != WaypointKind::weld;
-        step(circular_ ? "MOVC" : "MOVL", target.at, speed(target, options_) + (stops ? " PL=0" : " PL=1"));
+        step(circular_ ? "MOVC" : "MOVL", target, speed(target, options_) + (stops ? " PL=0" : " PL=1"));
     }
 
     void process(WaypointKind kind) {
@@ -123,17 +155,13 @@ private:
     const std::vector<Target>& all_;
     const ExportOptions& options_;
     bool circular_ = false;
+    bool by_axes_ = false;  // the last position was
 };
 
 TextFile file(const std::string& name, const Writer& writer, const ExportOptions& options) {
     const auto& user = options.yaskawa_user_frame;
     std::string text = "/JOB\n//NAME " + name + "\n//POS\n///NPOS " + std::to_string(writer.points) + ",0,0,0,0,0\n";
-    if (writer.points > 0) {
-        text += user ? "///USER " + plain(*user) + "\n" : "";
-        text +=
-            "///TOOL " + plain(*options.yaskawa_tool) + "\n///POSTYPE " + (user ? "USER" : "BASE") + "\n///RECTAN\n";
-        text += "///RCONF " + options.yaskawa_configuration + "\n" + writer.positions;
-    }
+    text += writer.positions;
     text += "//INST\n///DATE 1970/01/01 00:00\n///COMM SEAMPATH\n///ATTR SC,RW,RJ\n////FRAME ";
     text += user ? "USER " + plain(*user) : std::string("BASE");
     return {name + ".jbi", crlf(text + "\n///GROUP1 RB1\nNOP\n" + writer.instructions + "END\n")};
@@ -142,6 +170,9 @@ TextFile file(const std::string& name, const Writer& writer, const ExportOptions
 void set_up(Writer& writer, const Program& program, const ExportOptions& options) {
     std::vector<std::string> head = preamble(program, options, kRounding_mm);
     head.push_back("Units: mm, deg, V in " + options.yaskawa_speed_unit + "; Rx, Ry, Rz about X, Y, Z.");
+    if (options.arm_robot == "yaskawa" && program.plan.arm) {
+        head.push_back("Pulses per deg: " + list(options.yaskawa_pulses_per_deg, " ") + " .");
+    }
     for (const std::string& comment : wrapped(head, kMaxComment)) {
         writer.line("'" + comment);
     }
@@ -184,6 +215,14 @@ std::vector<std::string> problems(const ExportOptions& options) {
                                  : "yaskawa_arc_start: no arc start file was given; one was needed with "
                                    "yaskawa_arc_end");
     }
+    const std::vector<double>& pulses_per_deg = options.yaskawa_pulses_per_deg;
+    const auto counts = [](double n) { return std::isfinite(n) && std::abs(n) >= kLeastPulses_per_deg; };
+    if ((options.arm_robot == "yaskawa" || !pulses_per_deg.empty()) &&
+        !(pulses_per_deg.size() == 6 && std::all_of(pulses_per_deg.begin(), pulses_per_deg.end(), counts))) {
+        found.push_back("yaskawa_pulses_per_deg: [" + list(pulses_per_deg, ", ") +
+                        "] are no pulses of six axes, 500 per deg or more; those of your "
+                        "arm were needed, since arm_robot is yaskawa");
+    }
     if (options.yaskawa_weave && !start) {
         found.emplace_back("yaskawa_weave: stands alone; yaskawa_arc_start and yaskawa_arc_end were needed with it");
     }
@@ -196,7 +235,7 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
 
 }  // namespace
 
-constinit const Format kYaskawa{"yaskawa", kRounding_mm, kMaxCoordinate_mm, 0,     true,        true,
+constinit const Format kYaskawa{"yaskawa", kRounding_mm, kMaxCoordinate_mm, 0,     true,        true, Axes::air,
                                 true,      told,         problems,          write, read_yaskawa};
 
 }  // namespace seampath::exporting

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <string>
 
-#include "stages/export/text.hpp"
+#include "stages/export/yaskawa_job.hpp"
 
 /// Reads INFORM jobs as a controller would: positions of one tool, frame and configuration, instructions line by line,
 /// calls of other jobs. What V= means is no part of a job: the comment that tells it is held to. Anything else is an
@@ -13,126 +14,7 @@
 namespace seampath::exporting {
 namespace {
 
-constexpr std::size_t kLongestName = 32;
 constexpr std::size_t kLongestComment = 32;
-
-double whole(Scanner& scan) {
-    const double n = scan.number();
-    require(n >= 0 && n == std::floor(n), scan, "a whole number");
-    return n;
-}
-
-struct Pose {
-    Eigen::Vector3d p;
-    Eigen::Quaterniond q;
-};
-
-struct Job {
-    std::string name, frame, comments;
-    std::map<double, Pose> positions;
-    std::vector<Scanner> lines;
-};
-
-// A line that begins so; what follows is left.
-void heading(Scanner& scan, const char* text) {
-    require(scan.accept(text), scan, text);
-}
-
-void heading_line(Scanner& scan, const char* text) {
-    heading(scan, text);
-    scan.end_line();
-}
-
-Pose pose(Scanner& scan) {
-    std::array<double, 6> n{};
-    for (std::size_t i = 0; i < 6; ++i) {
-        if (i > 0) {
-            scan.expect(',');
-        }
-        n[i] = scan.number();
-        require(i < 3 || std::abs(n[i]) <= 180, scan, "an angle within 180 deg");
-    }
-    return {{n[0], n[1], n[2]}, turned(n[5], n[4], n[3])};
-}
-
-// What the positions are in, then the positions.
-void positions(Scanner& scan, Job& job, double count) {
-    if (scan.accept("///USER")) {
-        job.frame = "USER " + plain(whole(scan));
-        scan.end_line();
-    } else {
-        job.frame = "BASE";
-    }
-    heading(scan, "///TOOL");
-    whole(scan);
-    scan.end_line();
-    heading(scan, "///POSTYPE");
-    require(scan.name() == job.frame.substr(0, 4), scan, job.frame.substr(0, 4));
-    scan.end_line();
-    heading_line(scan, "///RECTAN");
-    heading(scan, "///RCONF");
-    int numbers = 0;
-    do {
-        require(whole(scan) <= 1, scan, "0 or 1");
-        ++numbers;
-    } while (scan.accept(','));
-    require(numbers >= 6 && numbers <= 24, scan, "6 to 24 numbers");
-    scan.end_line();
-    for (double i = 0; i < count; ++i) {
-        scan.expect('C');
-        require(whole(scan) == i, scan, "the next position");
-        scan.expect('=');
-        job.positions[i] = pose(scan);
-        scan.end_line();
-    }
-}
-
-Job load(const TextFile& file) {
-    require_crlf_ascii(file);
-    Scanner scan(file, '\0', Scanner::Lines::kept);
-    Job job;
-    heading_line(scan, "/JOB");
-    heading(scan, "//NAME");
-    job.name = scan.name();
-    require(job.name.size() <= kLongestName && file.name == job.name + ".jbi", scan,
-            "the file's name, of at most 32 characters");
-    scan.end_line();
-    heading_line(scan, "//POS");
-    heading(scan, "///NPOS");
-    const double count = whole(scan);
-    for (int i = 0; i < 5; ++i) {
-        scan.expect(',');
-        require(whole(scan) == 0, scan, "no other positions");
-    }
-    scan.end_line();
-    if (count > 0) {
-        positions(scan, job, count);
-    }
-    heading_line(scan, "//INST");
-    heading(scan, "///DATE");
-    scan.to_line_end();
-    scan.end_line();
-    heading(scan, "///COMM");
-    require(scan.to_line_end().size() <= kLongestComment + 1, scan, "a comment of at most 32 characters");
-    scan.end_line();
-    heading_line(scan, "///ATTR SC,RW,RJ");
-    heading(scan, "////FRAME");
-    const std::string frame = scan.to_line_end();
-    require(count == 0 || frame == " " + job.frame, scan, "the frame of the positions");
-    scan.end_line();
-    heading_line(scan, "///GROUP1 RB1");
-    heading_line(scan, "NOP");
-    while (!scan.accept("END")) {
-        require(!scan.done(), scan, "END");
-        job.lines.push_back(scan);
-        const std::string line = scan.to_line_end();
-        job.comments += line.starts_with("'") ? line.substr(1) + " " : "";
-        scan.end_line();
-    }
-    scan.end_line();
-    require(scan.done(), scan, "the end of the file");
-    return job;
-}
 
 // "... V in cm/min; ..." among the comments.
 double mm_s_per_unit(const std::string& comments, const Scanner& place) {
@@ -146,21 +28,36 @@ double mm_s_per_unit(const std::string& comments, const Scanner& place) {
     return found->second;
 }
 
+// "Pulses per deg: 1000 1000 ... ." among the comments; none where there are no pulses.
+std::array<double, 6> pulses_per_degree(const std::string& comments, const Scanner& place) {
+    std::array<double, 6> result{};
+    constexpr std::string_view kBefore = "Pulses per deg:";
+    const auto at = comments.find(kBefore);
+    if (at != std::string::npos) {
+        std::istringstream numbers(comments.substr(at + kBefore.size()));
+        for (double& number : result) {
+            require(static_cast<bool>(numbers >> number) && number != 0, place, "six numbers behind Pulses per deg:");
+        }
+    }
+    return result;
+}
+
 class Controller {
 public:
     explicit Controller(const std::vector<TextFile>& files) {
         for (const TextFile& file : files) {
-            jobs_.push_back(load(file));
+            jobs_.push_back(load_yaskawa(file));
         }
         const Scanner start(files.at(0), '\0');
         mm_s_per_unit_ = mm_s_per_unit(jobs_.front().comments, start);
+        pulses_per_deg_ = pulses_per_degree(jobs_.front().comments, start);
         run(jobs_.front(), 0);
         require(!arc_ && !weave_, start, "arc and weave to end");
     }
     std::vector<Target> targets;
 
 private:
-    void run(const Job& job, int depth) {
+    void run(const YaskawaJob& job, int depth) {
         for (Scanner scan : job.lines) {
             if (scan.accept('\'')) {
                 require(scan.to_line_end().size() <= kLongestComment, scan, "a comment of at most 32 characters");
@@ -181,7 +78,7 @@ private:
     }
 
     void call(Scanner& scan, const std::string& name, int depth) {
-        const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& j) { return j.name == name; });
+        const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const YaskawaJob& j) { return j.name == name; });
         require(job != jobs_.end() && depth < 3, scan, "a job of these files, and not itself,");
         run(*job, depth + 1);
     }
@@ -212,26 +109,33 @@ private:
 
     static void number(Scanner& scan, const char* kind) {
         require(scan.name() == kind && scan.accept("#("), scan, std::string(kind) + "#(n)");
-        require(whole(scan) >= 1, scan, "a number from 1 on");
+        require(whole_number(scan) >= 1, scan, "a number from 1 on");
         scan.expect(')');
     }
 
-    void motion(Scanner& scan, const std::string& word, const Job& job) {
+    void motion(Scanner& scan, const std::string& word, const YaskawaJob& job) {
         scan.expect('C');
-        const auto found = job.positions.find(whole(scan));
-        require(found != job.positions.end(), scan, "a position of this job");
-        require(targets.empty() == (word == "MOVJ"), scan, "a first move along the axes, and no other,");
+        const double number = whole_number(scan);
+        require(!targets.empty() || word == "MOVJ", scan, "a first move along the axes");
         Target target;
-        target.at.p = found->second.p;
-        target.at.q = found->second.q;
+        if (const auto found = job.poses.find(number); found != job.poses.end()) {
+            const auto [x, y, z, rx, ry, rz] = found->second;
+            target.at.p = {x, y, z};
+            target.at.q = turned(rz, ry, rx);
+            require(targets.empty() || word != "MOVJ", scan, "pulses for a MOVJ behind the first");
+        } else {
+            target = by_pulses(scan, job, number);
+            require(word == "MOVJ" && !arc_, scan, "MOVJ to pulses, and the arc off,");
+        }
         target.at.kind = arc_ ? WaypointKind::weld : WaypointKind::air;
         target.at.speed_mm_s = speed(scan, word);
         stopped_ = word == "MOVJ";
         if (scan.accept("PL=")) {
-            const double level = whole(scan);
+            const double level = whole_number(scan);
             require(level <= 8, scan, "a position level from 0 to 8");
             stopped_ = level == 0;
         }
+        target.passed = !stopped_;
         const bool on_the_spot = !targets.empty() && targets.back().at.p == target.at.p &&
                                  targets.back().at.q.coeffs() == target.at.q.coeffs();
         if (word == "MOVC") {
@@ -247,6 +151,17 @@ private:
         require(!spot_, scan, "a circle behind a move on the spot");
         target.move = word == "MOVJ" ? Move::joint : Move::linear;
         targets.push_back(target);
+    }
+
+    Target by_pulses(Scanner& scan, const YaskawaJob& job, double number) const {
+        const auto found = job.pulses.find(number);
+        require(found != job.pulses.end(), scan, "a position of this job");
+        std::array<double, 6> q_deg = found->second;
+        for (std::size_t i = 0; i < q_deg.size(); ++i) {
+            require(pulses_per_deg_[i] != 0, scan, "a comment that tells the pulses per deg");
+            q_deg[i] /= pulses_per_deg_[i];
+        }
+        return axes_target(q_deg);
     }
 
     // The first of three is where the robot stands; a circle right behind another would be one of more points.
@@ -277,8 +192,9 @@ private:
         return value;
     }
 
-    std::vector<Job> jobs_;
+    std::vector<YaskawaJob> jobs_;
     double mm_s_per_unit_ = 0;
+    std::array<double, 6> pulses_per_deg_{};
     int circle_ = 0;           // MOVC so far, of three
     bool arc_before_ = false;  // the last move was a circle's third
     bool spot_ = false;        // it was a move on the spot

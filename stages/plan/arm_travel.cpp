@@ -117,9 +117,12 @@ private:
         if (result_.shift_mm) {
             const Eigen::Vector3d& s = *result_.shift_mm;
             result_.verdict += "; with the part moved by " + fixed(s.norm(), 1) + " mm, (" + fixed(s.x(), 1) + ", " +
-                               fixed(s.y(), 1) + ", " + fixed(s.z(), 1) + ") in the base, it can";
+                               fixed(s.y(), 1) + ", " + fixed(s.z(), 1) +
+                               ") in the base (export.base_from_scan), it can";
         } else {
-            result_.verdict += "; no move of the part by up to 2 m was found that helps";
+            result_.verdict +=
+                "; no move of the part by up to 2 m (export.base_from_scan) was found that helps; plan.arm and "
+                "plan.flange_from_tool say what reaches there";
         }
     }
 
@@ -200,7 +203,8 @@ private:
     bool add_air_move(const Way& from, const Way& to, double& time) {
         std::vector<JointAngles> points{from.track.q.back()};
         const int via = from.chain.back().waypoint + 1;
-        if (via < to.chain.front().waypoint) {
+        const bool over_air = via < to.chain.front().waypoint;
+        if (over_air) {
             Waypoint& air = turned_[static_cast<std::size_t>(via)];
             const auto q = posture_in_air(air, 0.5 * (from.track.q.back() + to.track.q.front()));
             if (!q) {
@@ -221,7 +225,8 @@ private:
         Waypoint at = to.chain.front().at;
         at.kind = WaypointKind::air;
         for (std::size_t k = 1; k + 1 < move.q.size(); ++k) {
-            add(at, -1, time + move.time_s[k], move.q[k], to.track.roll.front());
+            const bool in_air = over_air && points.size() == 3 && k == move.at_point[1];
+            add(at, in_air ? via : -1, time + move.time_s[k], move.q[k], to.track.roll.front());
         }
         time += move.time_s.back();
         return true;

@@ -277,6 +277,13 @@ TEST(Brands, SayWhichKeySetsWhatIsMissing) {
         {"linuxcnc", "linuxcnc_arc_output: 64 is no digital output", [](auto& o) { o.linuxcnc_arc_output = 64; }},
         {"linuxcnc", "linuxcnc_work_offset: 10", [](auto& o) { o.linuxcnc_work_offset = 10; }},
         {"ros", "ros_frame: \"base link\" is no frame", [](auto& o) { o.ros_frame = "base link"; }},
+        {"abb", "abb_weld_data: \"Speed0\" is a name that the program itself declares",
+         [](auto& o) { o.abb_seam_data = "s", o.abb_weld_data = "Speed0"; }},
+        {"abb", "abb_tool: \"seampath_seam3\" is a name that", [](auto& o) { o.abb_tool = "seampath_seam3"; }},
+        {"abb", "program_name: \"speed2\" is what", [](auto& o) { o.program_name = "speed2"; }},
+        {"kuka", "none as the program's points", [](auto& o) { o.kuka_arc_on = "P1", o.kuka_arc_off = "x"; }},
+        {"kuka", "none as the program's points", [](auto& o) { o.kuka_arc_on = "x", o.kuka_arc_off = "Seampath_0"; }},
+        {"kuka", "program_name: \"p7\" is what", [](auto& o) { o.program_name = "p7"; }},
         {"abb", "abb_weave_data: \"w\" stands alone", [](auto& o) { o.abb_weave_data = "w"; }},
     };
     for (const Bad& bad : all) {
@@ -289,23 +296,84 @@ TEST(Brands, SayWhichKeySetsWhatIsMissing) {
     }
 }
 
-TEST(Brands, PositionsBeyondWhatTheControllerHoldsAreRefused) {
-    for (const char* robot : {"kuka", "fanuc", "yaskawa"}) {
+TEST_P(EveryRobot, TellsTheUncertaintyOfTheFrame) {
+    ExportOptions options = test::cell_options();
+    options.base_from_scan_sigma_mm = 0.125;
+    options.base_from_scan_sigma_deg = 0.0625;
+    const Plan plan = test::golden_plan_for(robot());
+    // Short comments are broken between words.
+    const std::string text = programs(plan, robot(), options)[0].content;
+    EXPECT_THAT(text, AllOf(HasSubstr("base_from_scan"), HasSubstr("0.125"), HasSubstr("0.0625"), HasSubstr("sigma")));
+    options.base_from_scan_sigma_mm.reset();
+    options.base_from_scan_sigma_deg.reset();
+    EXPECT_THAT(programs(plan, robot(), options)[0].content, Not(HasSubstr("-sigma of")));
+}
+
+// 8.5 mm/s has no whole number of mm/s: another unit, more digits, or as a speed is told there.
+TEST_P(EveryRobot, HoldsEightAndAHalfMillimetresASecond) {
+    for (const char* unit : {"mm/s", "cm/min", "m/min"}) {
         ExportOptions options = test::cell_options();
-        options.base_from_scan[0] = 9000;
-        EXPECT_THAT([&] { programs(test::golden_plan(), robot, options); },
-                    ThrowsMessage<InputError>(AllOf(HasSubstr(robot), HasSubstr("base_from_scan"))));
+        options.yaskawa_speed_unit = unit;
+        const auto files = programs(test::plan_with(Eigen::Quaterniond(0, 1, 0, 0), 8.5), robot(), options);
+        EXPECT_LE(files[0].max_speed_error, 1e-9);
+        EXPECT_THAT(files[0].content, Not(AllOf(HasSubstr("8mm/sec"), HasSubstr("9mm/sec"))));
     }
 }
 
-TEST(Brands, TellTheUncertaintyOfTheFrame) {
+TEST_P(EveryRobot, TakesNamesThatItCanHoldAndNoOthers) {
     ExportOptions options = test::cell_options();
-    options.base_from_scan_sigma_mm = 0.12;
-    options.base_from_scan_sigma_deg = 0.02;
-    for (const char* robot : {"csv", "abb", "kuka", "ur"}) {
-        EXPECT_THAT(programs(test::golden_plan(), robot, options)[0].content,
-                    HasSubstr("1-sigma of base_from_scan: 0.12 mm, 0.02 deg."));
+    options.robots = robot();
+    options.program_name = std::string(40, 'a');
+    const bool nameless = robot() == "csv" || robot() == "json";
+    const bool shorter = robot() == "abb" || robot() == "kuka" || robot() == "fanuc" || robot() == "yaskawa";
+    if (shorter) {
+        EXPECT_THAT(export_problems(options), testing::ElementsAre(HasSubstr("has 40 characters; at most")));
+    } else {
+        EXPECT_TRUE(nameless || programs(test::golden_plan_for(robot()), robot(), options)[0].file_name.starts_with(
+                                    options.program_name));
     }
+    options.program_name = "N\xC3\xA4ht";
+    EXPECT_EQ(export_problems(options).empty(), nameless) << "a name of letters beyond ASCII";
+}
+
+// Text from other files, as an arm's name, stays out of the programs where it is not ASCII.
+TEST_P(EveryRobot, StaysInAscii) {
+    Plan plan = test::arm_plan();
+    plan.arm->arm = "Roboter f\xC3\xBCr N\xC3\xA4hte\nEND";
+    if (robot() == "linuxcnc") {
+        plan = test::golden_plan_for(robot());
+    }
+    ExportOptions options = test::arc_options();
+    options.arm_robot =
+        robot() == "csv" || robot() == "json" || robot() == "linuxcnc" || robot() == "ros" || robot() == "noether"
+            ? ""
+            : robot();
+    for (const ProgramFile& file : programs(plan, robot(), options)) {
+        EXPECT_TRUE(file.file_name.ends_with(".mcap") ||
+                    std::all_of(file.content.begin(), file.content.end(),
+                                [](char c) { return c == '\n' || c == '\r' || c == '\t' || (c >= ' ' && c <= '~'); }))
+            << file.file_name;
+    }
+}
+
+TEST_P(EveryRobot, RefusesPositionsBeyondItsRange) {
+    const std::size_t row =
+        static_cast<std::size_t>(std::find(kRobotNames.begin(), kRobotNames.end(), robot()) - kRobotNames.begin());
+    const double most_mm = exporting::format(row).max_coordinate_mm;
+    ExportOptions options = test::cell_options();
+    if (!std::isfinite(most_mm)) {
+        options.base_from_scan[0] = 1e7;
+        EXPECT_LE(programs(test::golden_plan(), robot(), options)[0].max_position_error_mm, 1e-8);
+        return;
+    }
+    // The farthest waypoint lies at x = 35.1234 mm.
+    const Plan plan = test::plan_with(Eigen::Quaterniond(0, 1, 0, 0));
+    options.base_from_scan[0] = most_mm - 35.1235;
+    EXPECT_NO_THROW(programs(plan, robot(), options));
+    options.base_from_scan[0] = most_mm - 35.1233;
+    EXPECT_THAT([&] { programs(plan, robot(), options); },
+                ThrowsMessage<InputError>(
+                    AllOf(HasSubstr(robot() + ": waypoint 2 of seam 0 lies at"), HasSubstr("export.base_from_scan"))));
 }
 
 }  // namespace brands_test

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <random>
@@ -17,6 +18,7 @@
 #include "stages/geometry/pose.hpp"
 #include "stages/plan/plan.hpp"
 #include "tests/export/plans.hpp"
+#include "tests/geometry/arms.hpp"
 #include "tests/plan/models.hpp"
 #include "tests/test_folder.hpp"
 
@@ -157,11 +159,11 @@ TEST(Clients, RosMessagesTakeTheYaml) {
         GTEST_SKIP() << "python3-geometry-msgs and python3-trajectory-msgs are not installed";
     }
     const TestFolder folder;
-    for (const Plan& plan : {test::golden_plan(), test::plan_with(Eigen::Quaterniond(0, 1, 0, 0))}) {
+    for (const Plan& plan : {test::arm_plan(), test::plan_with(Eigen::Quaterniond(0, 1, 0, 0))}) {
         const auto files = programs(plan, "ros", test::arc_options());
         write_files(files, folder.path());
         const Ran ran = run("cd " + folder.path().string() + " && /usr/bin/python3 " + source("ros_messages.py") + " " +
-                            files[0].file_name + " " + files[1].file_name);
+                            files[0].file_name + " " + files[1].file_name + " " + (plan.arm ? files[2].file_name : ""));
         ASSERT_EQ(ran.status, 0) << ran.out;
         const std::string count = std::to_string(plan.waypoints.size());
         EXPECT_THAT(ran.out, testing::StartsWith("poses " + count + " points " + count + " frame base_link\nlast "));
@@ -170,7 +172,20 @@ TEST(Clients, RosMessagesTakeTheYaml) {
         last >> x >> w >> ns;
         EXPECT_NEAR(x, plan.waypoints.back().p.x() / 1000, 1e-12);
         EXPECT_NEAR(w, plan.waypoints.back().q.w(), 1e-12);
-        EXPECT_NEAR(ns, 1e9 * plan.waypoints.back().time_s, 20);
+        if (!plan.arm) {
+            EXPECT_NEAR(ns, 1e9 * plan.waypoints.back().time_s, 20);
+            continue;
+        }
+        const std::vector<ArmSample>& samples = plan.arm->samples;
+        EXPECT_NEAR(ns, 1e9 * samples.back().time_s, 20);
+        EXPECT_THAT(ran.out, testing::HasSubstr("joints joint_1 joint_2 joint_3 joint_4 joint_5 joint_6 points " +
+                                                std::to_string(samples.size()) + "\n"));
+        std::istringstream axes(ran.out.substr(ran.out.find("axes ") + 5));
+        for (const double planned : samples.back().q) {
+            double axis = 0;
+            axes >> axis;
+            EXPECT_NEAR(axis, planned, 1e-12);
+        }
     }
 }
 
@@ -181,14 +196,95 @@ TEST(Clients, FoxglovesOwnReaderReadsTheBag) {
         GTEST_SKIP() << "no @mcap/core in NODE_PATH";
     }
     const TestFolder folder;
-    write_files(programs(test::golden_plan(), "ros", test::arc_options()), folder.path());
+    write_files(programs(test::arm_plan(), "ros", test::arc_options()), folder.path());
     const Ran ran = run("node " + source("mcap_core.mjs") + " " + (folder.path() / "seampath.mcap").string());
     ASSERT_EQ(ran.status, 0) << ran.out;
     EXPECT_EQ(ran.out,
               "/seampath/poses geometry_msgs/msg/PoseArray ros2msg cdr 1\n"
               "/seampath/trajectory trajectory_msgs/msg/MultiDOFJointTrajectory ros2msg cdr 1\n"
               "/seampath/arc std_msgs/msg/Bool ros2msg cdr 4\n"
-              "messages 6 6\n");
+              "/seampath/joint_trajectory trajectory_msgs/msg/JointTrajectory ros2msg cdr 1\n"
+              "messages 7 7\n");
+}
+
+Ran run_freecad(const std::string& script, const fs::path& file) {
+    return run("FILE=" + file.string() + " QT_QPA_PLATFORM=offscreen freecadcmd " + source(script));
+}
+
+// Lines of six numbers or more behind a word.
+std::vector<std::vector<double>> rows_of(const std::string& text, const std::string& word) {
+    std::vector<std::vector<double>> rows;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+        // Its progress is written on the same line.
+        const auto at = line.find(word);
+        if (at != std::string::npos) {
+            std::istringstream numbers(line.substr(at + word.size()));
+            rows.emplace_back(std::istream_iterator<double>(numbers), std::istream_iterator<double>());
+        }
+    }
+    return rows;
+}
+
+TEST(Clients, FreecadReadsTheGcodeAsAPath) {
+    if (run("command -v freecadcmd").status != 0) {
+        GTEST_SKIP() << "freecadcmd is not installed (freecad)";
+    }
+    const TestFolder folder;
+    const Plan plan = test::golden_plan_for("linuxcnc");
+    ExportOptions options = test::arc_options();
+    write_files(programs(plan, "linuxcnc", options), folder.path());
+    const Ran ran = run_freecad("freecad_path.py", folder.path() / "seampath.ngc");
+    const auto rows = rows_of(ran.out, "G1 ");
+    const exporting::Program program = program_of(plan, exporting::kLinuxcnc, options);
+    ASSERT_EQ(rows.size(), program.targets.size()) << ran.out;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const Waypoint& w = program.targets[k].at;
+        const std::vector<double>& n = rows[k];
+        ASSERT_EQ(n.size(), 7u);
+        EXPECT_LT((Eigen::Vector3d(n[0], n[1], n[2]) - w.p).cwiseAbs().maxCoeff(), 1.01e-4);
+        EXPECT_LT(rotation_angle(w.q, from_euler_zyx(n[5] * kDeg, n[4] * kDeg, n[3] * kDeg)), 2e-4 * kDeg);
+        EXPECT_NEAR(n[6] / (60 * w.speed_mm_s), 1, 1e-5);
+    }
+}
+
+// FreeCAD has the maker's own table of the KR 16: at the axes that the program names, its flange is where the plan has
+// it.
+TEST(Clients, FreecadsKukaStandsWhereTheAxesOfTheProgramPutIt) {
+    if (run("command -v freecadcmd").status != 0) {
+        GTEST_SKIP() << "freecadcmd is not installed (freecad)";
+    }
+    const std::vector<SeamModel> models{
+        test::model_of(test::line(100), false, 8),
+        test::model_of(test::moved(test::line(100), Eigen::Isometry3d(Eigen::Translation3d(0, 150, 0))), false, 8)};
+    ArmCell cell{
+        load_arm("kuka-kr-16-2").arm, Eigen::Isometry3d(Eigen::Translation3d(900, 0, 300)),
+        Eigen::Isometry3d(Eigen::Translation3d(40, 0, 300) * Eigen::AngleAxisd(35 * kDeg, Eigen::Vector3d::UnitY()))};
+    const Plan planned = plan(models, {}, cell);
+    ASSERT_TRUE(planned.arm->pass) << planned.arm->verdict;
+    ExportOptions options = test::cell_options();
+    options.arm_robot = "kuka";
+    options.base_from_scan = {900, 0, 300, 1, 0, 0, 0};
+    const TestFolder folder;
+    write_files(programs(planned, "kuka", options), folder.path());
+    const Ran ran = run_freecad("freecad_robot.py", folder.path() / "seampath.dat");
+    const auto rows = rows_of(ran.out, "flange ");
+    std::size_t row = 0;
+    for (const Waypoint& w : planned.waypoints) {
+        if (w.kind != WaypointKind::approach && w.kind != WaypointKind::air) {
+            continue;
+        }
+        ASSERT_LT(row, rows.size()) << ran.out;
+        const std::vector<double>& n = rows[row++];
+        ASSERT_EQ(n.size(), 7u);
+        const Eigen::Isometry3d flange =
+            cell.base_from_scan * (Eigen::Translation3d(w.p) * w.q) * cell.flange_from_tool.inverse();
+        EXPECT_LT((Eigen::Vector3d(n[0], n[1], n[2]) - flange.translation()).norm(), 0.005);
+        const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
+        EXPECT_LT(rotation_angle(q, Eigen::Quaterniond(flange.linear())), 4e-4 * kDeg);
+    }
+    EXPECT_EQ(row, rows.size());
+    EXPECT_GE(row, 2u);
 }
 
 }  // namespace clients_test

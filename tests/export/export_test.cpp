@@ -158,29 +158,32 @@ TEST(Export, ReferenceDigits) {
 }
 
 // Out and back: the export itself reads its files again and throws where they say something else.
-TEST(Export, ThreeHundredRandomPlansComeBack) {
+TEST(Export, FiveHundredRandomProgramsComeBackFromEveryRobot) {
     std::mt19937_64 generator(7);
-    for (int i = 0; i < 300; ++i) {
+    int seams = 0;
+    for (int i = 0; i < 500; ++i) {
         const Plan plan = test::random_plan(generator);
-        for (ExportOptions options : {test::cell_options(), test::arc_options()}) {
-            options.robots = test::robots_without("linuxcnc");
-            for (const ProgramFile& file : export_programs(plan, options)) {
-                const bool exact = file.robot == "csv" || file.robot == "json";
-                const auto& format = *std::find_if(kRobotNames.begin(), kRobotNames.end(),
-                                                   [&](std::string_view name) { return name == file.robot; });
-                const double rounding_mm =
-                    exporting::format(static_cast<std::size_t>(&format - kRobotNames.data())).position_rounding_mm;
-                EXPECT_LE(file.max_position_error_mm, exact ? 0 : rounding_mm * std::sqrt(3) + 2e-9)
-                    << file.robot << " " << i;
-                EXPECT_LE(file.max_orientation_error_deg, exact                   ? 0
-                                                          : file.robot == "fanuc" ? 9e-4
-                                                                                  : 1.3e-4)
-                    << file.robot << " " << i;
-                EXPECT_LE(file.max_speed_error, 1e-3) << file.robot << " " << i;
-                EXPECT_EQ(file.position_rounding_mm, rounding_mm);
-            }
+        seams += plan.waypoints.back().seam + 1;
+        ExportOptions options = i % 2 == 0 ? test::cell_options() : test::arc_options();
+        options.robots = test::robots_without("linuxcnc");
+        options.arc_moves = i % 4 < 2;
+        options.kuka_spline = i % 3 == 0;
+        for (const ProgramFile& file : export_programs(plan, options)) {
+            const bool exact = file.robot == "csv" || file.robot == "json";
+            const auto& format = *std::find_if(kRobotNames.begin(), kRobotNames.end(),
+                                               [&](std::string_view name) { return name == file.robot; });
+            const double rounding_mm =
+                exporting::format(static_cast<std::size_t>(&format - kRobotNames.data())).position_rounding_mm;
+            EXPECT_LE(file.max_position_error_mm, exact ? 0 : rounding_mm * std::sqrt(3) + 2e-9) << file.robot << i;
+            EXPECT_LE(file.max_orientation_error_deg, exact                   ? 0
+                                                      : file.robot == "fanuc" ? 9e-4
+                                                                              : 1.3e-4)
+                << file.robot << " " << i;
+            EXPECT_LE(file.max_speed_error, 1e-3) << file.robot << " " << i;
+            EXPECT_EQ(file.position_rounding_mm, rounding_mm);
         }
     }
+    EXPECT_GE(seams, 500);
 }
 
 TEST(Export, RandomPlansComeBackFromLinuxcncOrAreRefused) {

@@ -61,6 +61,17 @@ TEST(Golden, ProgramsThatOnlyMove) {
     expect_golden("move", options, test::golden_plan_for("linuxcnc"));
 }
 
+// Each robot's own arm goes through the air by its axes; ROS gets all of its travel.
+TEST(Golden, ProgramsOfAnArm) {
+    ExportOptions options = test::arc_options();
+    options.program_name = "arm";
+    for (const char* robot : {"abb", "kuka", "fanuc", "ur", "yaskawa", "ros"}) {
+        options.robots = robot;
+        options.arm_robot = options.robots == "ros" ? "" : robot;
+        expect_golden("arm", options, test::arm_plan());
+    }
+}
+
 // A weld along half a circle, at numbers that every machine computes alike.
 TEST(Golden, ProgramsWithArcs) {
     std::vector<Waypoint> waypoints;

@@ -79,6 +79,34 @@ inline Plan golden_plan_for(std::string_view robot) {
     return plan;
 }
 
+/// The golden plan with an arm, every angle a sixteenth of a rad, that is at each waypoint and once in between. Through
+/// the air its axes take half as long again as the tool would.
+inline Plan arm_plan() {
+    Plan plan = golden_plan();
+    ArmTravel arm;
+    arm.arm = "Arm 6";
+    arm.max_speed = {2, 2, 2.5, 4, 4, 5};
+    double time_s = 0;
+    for (std::size_t k = 0; k < plan.waypoints.size(); ++k) {
+        const Waypoint& w = plan.waypoints[k];
+        const bool in_air = w.kind == WaypointKind::air || w.kind == WaypointKind::approach;
+        const double step_s = k == 0 ? 0 : (in_air ? 1.5 : 1) * (w.time_s - plan.waypoints[k - 1].time_s);
+        for (const int half : {1, 2}) {
+            if (half == 2 || step_s > 0) {
+                ArmSample sample{w.seam, w.kind, half == 2 ? static_cast<int>(k) : -1, w.station_mm, 0, {}, 0, 0.1};
+                const int turn = static_cast<int>(2 * k) + half - 2;
+                sample.time_s = time_s + 0.5 * half * step_s;
+                sample.q = {turn / 16.0, (turn - 8) / 16.0,   1.5 - turn / 16.0,
+                            -0.25,       -1.25 + turn / 32.0, -turn / 16.0};
+                arm.samples.push_back(sample);
+            }
+        }
+        time_s += step_s;
+    }
+    plan.arm = arm;
+    return plan;
+}
+
 /// Every robot but those named.
 inline std::string robots_without(std::string_view left_out) {
     std::string robots;
@@ -101,6 +129,8 @@ inline ExportOptions cell_options() {
     options.yaskawa_tool = 1;
     options.yaskawa_speed_unit = "cm/min";
     options.yaskawa_configuration = "1,0,0,0,0,0";
+    options.yaskawa_pulses_per_deg = {1435.5, -1300.25, 1422, 1000, 1102.75, 640};
+    options.arm_joints = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6";
     return options;
 }
 
