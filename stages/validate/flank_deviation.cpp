@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMostTurn = 35 * std::numbers::pi / 180;  // of a flank's normal against the model's
+constexpr double kMostTurn = 35 * kDegree;  // of a flank's normal against the model's
 
 /// Where the model lies over one flank at a sample.
 struct FlankAt {

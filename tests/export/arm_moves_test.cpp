@@ -16,7 +16,7 @@
 
 /// Programs of a plan that knows its arm: moves along the axes through the air, and ROS's trajectory of them.
 namespace seampath {
-namespace {
+namespace arm_moves_test {
 
 using exporting::Axes;
 using exporting::Format;
@@ -336,5 +336,5 @@ TEST(ArmMovesRos, PlannedTravelsComeBack) {
     }
 }
 
-}  // namespace
+}  // namespace arm_moves_test
 }  // namespace seampath
