@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Dense>
 
+#include "stages/angle.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/whole_flank.hpp"
 #include "stages/validate/flank_windows.hpp"
