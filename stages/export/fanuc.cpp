@@ -166,7 +166,7 @@ private:
             text += (i == 0   ? "\n\t"
                      : i == 3 ? ",\n\t"
                               : ",\t") +
-                    deg("J" + std::to_string(i + 1) + "= ", kDegrees * j[i]);
+                    deg("J" + std::to_string(i + 1) + "= ", kDegreesPerRadian * j[i]);
         }
         return text;
     }
