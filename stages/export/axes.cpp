@@ -58,7 +58,7 @@ void add_travel(std::vector<Target>& targets, const std::vector<ArmSample>& samp
             there = samples[next].waypoint >= 0;
         }
         ensure(samples[next - 1].waypoint == static_cast<int>(target.waypoint), "the arm passes waypoints in order");
-        // Through the air the arm takes the time that its axes need.
+        // A nanosecond later where the torch turns on the spot.
         target.at.time_s = target.axes.back().time_s;
         const double length = k == 0 ? 0 : (target.at.p - targets[k - 1].at.p).norm();
         if (in_air(target) && length > 0) {

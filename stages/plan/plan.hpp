@@ -69,7 +69,8 @@ struct ArmCell {
 ///
 /// With a cell the plan says how the arm makes the travel: Plan::arm. The torch may be turned about its wire for it, by
 /// up to options.arm_roll_deg: waypoints get that turn, and more of them where it changes. An arm that can't make the
-/// travel leaves the waypoints as they are, with the reason in its verdict. `options.arm`, a name, says nothing here.
+/// travel leaves the waypoints as they are, with the reason in its verdict. Through the air it goes by its axes, and
+/// times are those of that. `options.arm`, a name, says nothing here.
 ///
 /// Throws InputError naming seam and station where the flanks have no bisector or the torch direction jumps, for a seam
 /// shorter than ten chord tolerances, and for a groove that no passes fill.

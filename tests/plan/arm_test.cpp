@@ -50,6 +50,7 @@ void expect_laws(const Plan& plan, const ArmCell& cell, const PlanOptions& optio
             ASSERT_LT((tool.translation() - w.p).norm(), 1e-6);
             ASSERT_LT(rotation_angle(Eigen::Quaterniond(tool.linear()), w.q), 1e-9);
             ASSERT_EQ(s.kind, w.kind);
+            ASSERT_EQ(s.time_s, w.time_s);
         }
         if (k == 0) {
             continue;
@@ -66,6 +67,7 @@ void expect_laws(const Plan& plan, const ArmCell& cell, const PlanOptions& optio
     EXPECT_GE(margin, 0);
     EXPECT_NEAR(margin, arm.least_margin, 1e-12);
     EXPECT_NEAR(duration, arm.duration_s, 1e-12);
+    EXPECT_EQ(plan.duration_s, arm.duration_s);
     EXPECT_EQ(waypoints, plan.waypoints.size()) << "every waypoint has its angles";
 }
 
