@@ -54,6 +54,17 @@ try_packages() {
     (install_packages "$@") || say "setup: going on without: $*"
 }
 
+# What Debian has no package of, where there is npm: in FOLDER/npm, to which NODE_PATH leads from then on.
+try_node_package() {
+    local folder=$root/$1/npm package=$2
+    if ! command -v npm >/dev/null; then
+        say "setup: there is no npm; going on without $package"
+        return 0
+    fi
+    npm install --prefix "$folder" --no-audit --no-fund --silent "$package" >&2 || say "setup: going on without $package"
+    export NODE_PATH=$folder/node_modules
+}
+
 # As many compilers as there are cores, but each may need 1.2 GB.
 build_jobs() {
     local cores available_kb by_memory
