@@ -11,7 +11,7 @@
 namespace seampath {
 namespace {
 
-struct Arguments {
+struct DatasetArguments {
     std::string scene;
     std::string preset = "standard";
     std::uint64_t seed = 1;
@@ -46,7 +46,7 @@ SceneKind scene_kind(const std::string& scene) {
                      hint(scene, kSceneNames));
 }
 
-int make(const Arguments& given) {
+int make(const DatasetArguments& given) {
     SceneOptions scene;
     scene.kind = scene_kind(given.scene);
     ScannerOptions scanner = preset(given.preset);
@@ -88,7 +88,7 @@ Command dataset_command(CLI::App& program) {
         "  seampath dataset list\n"
         "  seampath dataset make pipe-on-pipe --seed 3 --out data/pipe3\n"
         "  seampath dataset make tee --preset metrology --set scene.lean_deg=20 --out data/tee\n");
-    const auto given = std::make_shared<Arguments>();
+    const auto given = std::make_shared<DatasetArguments>();
     const CLI::App* list_app = app->add_subcommand("list", "scenes, scanner presets, and what --set takes");
     CLI::App* make_app = app->add_subcommand("make", "make a scan and its truth");
     make_app->add_option("SCENE", given->scene, "scene: " + join(kSceneNames))->required();

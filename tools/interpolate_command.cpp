@@ -17,7 +17,7 @@
 namespace seampath {
 namespace {
 
-struct Arguments {
+struct InterpolateArguments {
     std::string table;
     std::vector<std::string> methods{"all"};
     std::vector<std::string> parametrizations{"chord"};
@@ -85,7 +85,7 @@ void take_checks(const std::string& file, Comparison& comparison) {
     }
 }
 
-InterpolateOptions options_of(const Arguments& given) {
+InterpolateOptions options_of(const InterpolateArguments& given) {
     InterpolateOptions options;
     if (given.degree < 1 || given.degree > static_cast<int>(kMaxDegree)) {
         throw InputError("--degree: " + std::to_string(given.degree) + " is not between 1 and " +
@@ -106,7 +106,7 @@ InterpolateOptions options_of(const Arguments& given) {
     return options;
 }
 
-void add(Method method, const Arguments& given, Comparison& comparison) {
+void add(Method method, const InterpolateArguments& given, Comparison& comparison) {
     const bool parametric = method == Method::parametric;
     for (const auto& parametrization : parametric ? given.parametrizations : std::vector<std::string>{""}) {
         InterpolateOptions options = comparison.options;
@@ -126,7 +126,7 @@ void add(Method method, const Arguments& given, Comparison& comparison) {
 }
 
 /// With "all", methods that can't serve this table are left out, with the reason; there must be one that can.
-void add_all(const Arguments& given, Comparison& comparison) {
+void add_all(const InterpolateArguments& given, Comparison& comparison) {
     for (std::size_t m = 0; m < kMethodNames.size(); ++m) {
         const auto method = static_cast<Method>(m);
         try {
@@ -144,7 +144,7 @@ double mean_error(const MethodResult& result) {
     return result.check ? result.check->mean : 0;  // without check points the order stays
 }
 
-Comparison compare(const Arguments& given) {
+Comparison compare(const InterpolateArguments& given) {
     Comparison comparison;
     comparison.options = options_of(given);
     comparison.differences = given.differences;
@@ -173,7 +173,7 @@ Comparison compare(const Arguments& given) {
     return comparison;
 }
 
-int interpolate_table(const Arguments& given) {
+int interpolate_table(const InterpolateArguments& given) {
     const Comparison comparison = compare(given);
     if (!given.out.empty()) {
         write_output(given.out, comparison_svg(comparison));
@@ -210,7 +210,7 @@ void add_list(CLI::App* app, const std::string& name, auto& values, const std::s
 Command interpolate_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "interpolate", "classical and spline interpolation of a table or of a scan's seams, compared");
-    const auto given = std::make_shared<Arguments>();
+    const auto given = std::make_shared<InterpolateArguments>();
     app->add_option("TABLE", given->table, "table of x and y, x ascending; or the folder of a run")->required();
     add_list(app, "--method", given->methods, "all (default), or with commas between: " + join(kMethodNames));
     app->add_option("--check", given->check, "table of points between the rows that the lines are measured against");

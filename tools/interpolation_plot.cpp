@@ -13,7 +13,7 @@ constexpr std::array<const char*, 10> kColours{"#332288", "#cc3311", "#117733", 
                                                "#882255", "#44aa99", "#999933", "#cc6677", "#bbbbbb"};
 
 // CSS pixels.
-constexpr double kWidth = 760, kHeight = 480, kLegend = 190, kLine = 18;
+constexpr double kPlotWidth = 760, kPlotHeight = 480, kPlotLegend = 190, kPlotLine = 18;
 
 /// The nodes and check points with some room; lines that swing farther are cut at the edge.
 PlotAxes axes(const Comparison& comparison) {
@@ -24,8 +24,8 @@ PlotAxes axes(const Comparison& comparison) {
         top = std::max(top, point.y());
     }
     const double room = top > bottom ? 0.15 * (top - bottom) : 1;
-    return {kWidth,        kHeight,    comparison.x.front(), comparison.x.back(),
-            bottom - room, top + room, comparison.x_name,    comparison.y_name};
+    return {kPlotWidth,    kPlotHeight, comparison.x.front(), comparison.x.back(),
+            bottom - room, top + room,  comparison.x_name,    comparison.y_name};
 }
 
 std::vector<PlotPoint> samples(const Interpolant& line) {
@@ -75,9 +75,10 @@ std::string line_legend(const std::vector<std::string>& labels, double left_px, 
 
 std::string comparison_svg(const Comparison& comparison) {
     const PlotAxes frame = axes(comparison);
-    const double height = std::max(kHeight, 20 + kLine * static_cast<double>(comparison.results.size()));
+    const double height = std::max(kPlotHeight, 20 + kPlotLine * static_cast<double>(comparison.results.size()));
     std::string plot = svg_axes(frame, "Interpolation of a table by several methods");
-    plot.insert(4, " width=\"" + decimal(kWidth, 0) + "\" height=\"" + decimal(kHeight, 0) + "\"");  // after "<svg"
+    plot.insert(
+        4, " width=\"" + decimal(kPlotWidth, 0) + "\" height=\"" + decimal(kPlotHeight, 0) + "\"");  // after "<svg"
     std::vector<std::string> labels;
     for (std::size_t i = 0; i < comparison.results.size(); ++i) {
         labels.push_back(comparison.results[i].label);
@@ -91,9 +92,9 @@ std::string comparison_svg(const Comparison& comparison) {
         checks.push_back({point.x(), point.y()});
     }
     plot += svg_dots(frame, nodes, 3.5, "node") + svg_dots(frame, checks, 2, "check") + svg_end();
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(kWidth + kLegend, 0) + ' ' +
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(kPlotWidth + kPlotLegend, 0) + ' ' +
            decimal(height, 0) + "\">" + line_style(labels.size()) +
-           "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" + plot + line_legend(labels, kWidth, kLine) +
+           "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" + plot + line_legend(labels, kPlotWidth, kPlotLine) +
            svg_end();
 }
 

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 using Eigen::Vector2d;
 using Rows = std::vector<std::vector<std::string>>;
 
-struct Arguments {
+struct MechanismArguments {
     double radius_mm = 500;
     double alpha_step_deg = 10;
     double beta_step_deg = 5;
@@ -44,7 +44,7 @@ Vector2d point_of(const char* option, const std::vector<double>& values) {
     return {values[0], values[1]};
 }
 
-MechanismPath wanted_path(const Arguments& given) {
+MechanismPath wanted_path(const MechanismArguments& given) {
     const bool line = !given.from.empty() && !given.to.empty();
     if (line == !given.path.empty() || given.from.empty() != given.to.empty()) {
         throw InputError("mechanism: a path is needed, and one only: --from X,Y with --to X,Y, or --path FILE.csv");
@@ -107,7 +107,7 @@ std::string steps_csv(const TwoTierGrid& grid, const GridPath& path) {
 }
 
 /// The same path on grids that halve until the finer of both steps is at most `finest_deg`.
-Json series_json(const Arguments& given, const std::vector<Vector2d>& wanted, GridMethod method) {
+Json series_json(const MechanismArguments& given, const std::vector<Vector2d>& wanted, GridMethod method) {
     if (!(*given.finest_deg > 0)) {
         throw InputError("--table: " + shortest(*given.finest_deg) + " deg is no step; a step above 0 is needed");
     }
@@ -148,7 +148,7 @@ std::string path_text(const TwoTierGrid& grid, const GridPath& path) {
                         row("all", path.all)});
 }
 
-int two_tier(const Arguments& given) {
+int two_tier(const MechanismArguments& given) {
     const GridMethod method = static_cast<GridMethod>(choice("--method", given.method, kGridMethodNames));
     const TwoTierGrid grid =
         two_tier_grid(given.radius_mm, given.alpha_step_deg * kDegree, given.beta_step_deg * kDegree);
@@ -188,7 +188,7 @@ Command mechanism_command(CLI::App& program) {
         "  seampath mechanism two-tier --radius-mm 800 --alpha-step-deg 0.02 --beta-step-deg 0.01 --path out/part "
         "--seam 0 --method optimal --out out/steps\n";
     app->footer(examples);
-    const auto given = std::make_shared<Arguments>();
+    const auto given = std::make_shared<MechanismArguments>();
     CLI::App* tier = app->add_subcommand("two-tier", "a rod on a turning disc (Naumov et al.)");
     tier->add_option("--radius-mm", given->radius_mm, "radius of the disc and length of the rod")
         ->capture_default_str();

@@ -21,7 +21,7 @@ using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::array<std::string_view, 2> kSolverNames{"lbfgs", "gradient-projection"};
 
-struct Arguments {
+struct ParametrizeArguments {
     std::string points;
     std::string objective = "chord";
     std::string solver = "lbfgs";
@@ -31,7 +31,7 @@ struct Arguments {
     bool json = false;
 };
 
-ParametrizeOptions options_of(const Arguments& given) {
+ParametrizeOptions options_of(const ParametrizeArguments& given) {
     ParametrizeOptions options;
     options.objective = static_cast<Objective>(choice("--objective", given.objective, kObjectiveNames));
     options.solver = static_cast<Solver>(choice("--solver", given.solver, kSolverNames));
@@ -109,7 +109,7 @@ Json bending_json(const Parametrization& result) {
             {"travel_time", std::sqrt(result.peak)}};
 }
 
-Json result_json(const Arguments& given, const Parametrization& result, const Parametrization& chord) {
+Json result_json(const ParametrizeArguments& given, const Parametrization& result, const Parametrization& chord) {
     Json json{{"objective", given.objective}, {"t", result.t}};
     json.update(bending_json(result));
     if (!given.limits.empty()) {
@@ -124,7 +124,8 @@ Json result_json(const Arguments& given, const Parametrization& result, const Pa
     return json;
 }
 
-void print(const Arguments& given, const Table& table, const Parametrization& result, const Parametrization& chord) {
+void print(const ParametrizeArguments& given, const Table& table, const Parametrization& result,
+           const Parametrization& chord) {
     Rows rows{{"", given.objective, "chord"}};
     const auto add = [&](const std::string& what, double value, double of_chord, int decimals) {
         rows.push_back({what, fixed(value, decimals), fixed(of_chord, decimals)});
@@ -158,7 +159,7 @@ void print(const Arguments& given, const Table& table, const Parametrization& re
     std::cout << "\n" << aligned(parameters);
 }
 
-int parametrize_points(const Arguments& given) {
+int parametrize_points(const ParametrizeArguments& given) {
     ParametrizeOptions options = options_of(given);
     const Table table = read_table(given.points);
     const auto points = points_of(table, given.points);
@@ -181,7 +182,7 @@ int parametrize_points(const Arguments& given) {
 Command parametrize_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "parametrize", "parameters for a cubic spline through points, in the plane, in space or in joint angles");
-    const auto given = std::make_shared<Arguments>();
+    const auto given = std::make_shared<ParametrizeArguments>();
     app->add_option("POINTS", given->points, "table: a row a point, a column a coordinate")->required();
     app->add_option("--objective", given->objective,
                     "what the spacing follows (chord, centripetal, foley) or makes least: bending energy, exact or "

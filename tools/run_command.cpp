@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxReportBytes = std::size_t{1} << 31;
 
-struct Arguments {
+struct RunArguments {
     std::vector<std::string> scans;
     std::string out;
     std::optional<fs::path> config;
@@ -44,7 +44,7 @@ struct Part {
     std::size_t seams = 0;
 };
 
-std::vector<Override> overrides(const Arguments& given) {
+std::vector<Override> overrides(const RunArguments& given) {
     std::vector<Override> all;
     for (const auto& argument : given.set) {
         all.push_back(parse_override(argument));
@@ -58,7 +58,7 @@ std::vector<Override> overrides(const Arguments& given) {
     return all;
 }
 
-Resume resume(const Arguments& given) {
+Resume resume(const RunArguments& given) {
     if (given.fresh) {
         return {0};
     }
@@ -74,7 +74,7 @@ Resume resume(const Arguments& given) {
 }
 
 /// One scan goes straight into the folder; each of several into a folder of its name, numbered where names clash.
-std::vector<Part> parts(const Arguments& given) {
+std::vector<Part> parts(const RunArguments& given) {
     std::vector<Part> all;
     std::set<std::string> taken;
     for (const auto& scan : given.scans) {
@@ -111,7 +111,7 @@ void print_result(const Part& part, const PartResult& result) {
               << "\n";
 }
 
-int run_one(Part& part, const Arguments& given, const Config& config) {
+int run_one(Part& part, const RunArguments& given, const Config& config) {
     ProgressLine line(given.scans.size() == 1 ? "" : part.name + ": ");
     const PartResult result = run_part(part.scan, part.folder, config, resume(given), line.progress());
     part.seams = result.models.size();
@@ -145,7 +145,7 @@ void print_summary(const std::vector<Part>& all) {
     std::cout << "\n" << aligned(rows);
 }
 
-int run_several(std::vector<Part>& all, const Arguments& given, const Config& config) {
+int run_several(std::vector<Part>& all, const RunArguments& given, const Config& config) {
     const RunFolder folder(given.out);
     folder.remove("summary.json");  // of an earlier run
     int worst = kPass;
@@ -165,7 +165,7 @@ int run_several(std::vector<Part>& all, const Arguments& given, const Config& co
     return worst;
 }
 
-int run(const Arguments& given) {
+int run(const RunArguments& given) {
     watch_stop_signals();
     const Config config = read_config(given.config, overrides(given));
     resume(given);  // a wrong --from shows before the work
@@ -184,8 +184,9 @@ int run(const Arguments& given) {
 
 Command run_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("run", "scans in, seams, robot programs and reports out");
-    const auto given = std::make_shared<Arguments>();
-    app->add_option("SCAN", given->scans, "scans, or captures of pictures (.json); several are several parts")->required();
+    const auto given = std::make_shared<RunArguments>();
+    app->add_option("SCAN", given->scans, "scans, or captures of pictures (.json); several are several parts")
+        ->required();
     app->add_option("--out", given->out, "folder for the results")->required();
     app->add_option("--config", given->config, "config file, JSON with comments");
     app->add_option(

@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPointsFile = "saddle_points.csv";
 constexpr const char* kFactsFile = "saddle.json";
 
-struct Arguments {
+struct SaddleArguments {
     std::string header = "cylinder";
     std::optional<double> branch_radius_mm, header_radius_mm, head_depth_mm, cone_half_angle_deg;
     double angle_deg = 90;
@@ -55,7 +55,7 @@ double size_for(const std::string& option, const std::optional<double>& value, c
     return value.value_or(0);
 }
 
-SaddleDimensions given_dimensions(const Arguments& given) {
+SaddleDimensions given_dimensions(const SaddleArguments& given) {
     SaddleDimensions d;
     d.header = static_cast<HeaderKind>(choice("--header", given.header, kHeaderNames));
     if (!given.branch_radius_mm) {
@@ -72,7 +72,7 @@ SaddleDimensions given_dimensions(const Arguments& given) {
     return d;
 }
 
-Config config_of(const Arguments& given) {
+Config config_of(const SaddleArguments& given) {
     std::vector<Override> overrides;
     for (const auto& argument : given.set) {
         overrides.push_back(parse_override(argument));
@@ -95,7 +95,7 @@ Config config_of(const Arguments& given) {
 }
 
 /// The dimensions that the header has, and no others. Degrees as they were given, where they were.
-Json dimensions_json(const Arguments& given, const SaddleDimensions& d) {
+Json dimensions_json(const SaddleArguments& given, const SaddleDimensions& d) {
     const bool fitted = !given.branch_radius_mm;
     Json json{{"header", kHeaderNames.at(static_cast<std::size_t>(d.header))},
               {"branch_radius_mm", d.branch_radius_mm}};
@@ -117,7 +117,7 @@ Json dimensions_json(const Arguments& given, const SaddleDimensions& d) {
 }
 
 /// Options that belong to another use of the command.
-void check_use(const CLI::App& app, const Arguments& given) {
+void check_use(const CLI::App& app, const SaddleArguments& given) {
     const auto refuse = [&app](const char* option, const std::string& why) {
         if (app.count(option) > 0) {
             throw InputError(std::string(option) + ": " + why + "; leave it out");
@@ -157,7 +157,7 @@ void check_torch(const SaddleSteps& points, const Config& config) {
     }
 }
 
-int saddle(const Arguments& given) {
+int saddle(const SaddleArguments& given) {
     watch_stop_signals();
     remove_earlier_results(given.out);
     const SaddleFrom from{given.from, given.seam, given.out, given.json};
@@ -190,7 +190,7 @@ int saddle(const Arguments& given) {
     return part.pass() ? kPass : kOutOfTolerance;
 }
 
-void add_dimensions(CLI::App& app, Arguments& given) {
+void add_dimensions(CLI::App& app, SaddleArguments& given) {
     app.add_option("--branch-radius-mm", given.branch_radius_mm, "outer radius of the branch, mm");
     app.add_option("--header-radius-mm", given.header_radius_mm,
                    "outer radius of the header, mm; of a cone where the branch's axis crosses its axis");
@@ -208,7 +208,7 @@ void add_dimensions(CLI::App& app, Arguments& given) {
 Command saddle_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "saddle", "the seam of a round branch on a header, from nominal dimensions instead of a scan (Xue et al.)");
-    const auto given = std::make_shared<Arguments>();
+    const auto given = std::make_shared<SaddleArguments>();
     add_dimensions(*app, *given);
     app->add_option("--step", given->steps.step, "law of the interpolation steps: " + join(kStepLawNames))
         ->capture_default_str();

@@ -20,7 +20,7 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr int kPrinted = 12;
 
 // CSS pixels, and the room above and below the lines as a share of them.
-constexpr double kWidth = 760, kHeight = 300, kGap = 20, kRoom = 1.12;
+constexpr double kCurveWidth = 760, kCurveHeight = 300, kCurveGap = 20, kRoom = 1.12;
 
 constexpr std::string_view kStyle =
     "svg{background:#fff;font:12px sans-serif}"
@@ -54,8 +54,8 @@ std::string plot(const SaddleDifference& d, double y) {
         most = std::max({most, high.back().y, p.branch_wall_mm, p.header_wall_mm});
     }
     constexpr double kLeast_mm = 1e-6;
-    const PlotAxes axes{kWidth,
-                        kHeight,
+    const PlotAxes axes{kCurveWidth,
+                        kCurveHeight,
                         0,
                         360,
                         kRoom * std::min(least, -kLeast_mm),
@@ -63,8 +63,8 @@ std::string plot(const SaddleDifference& d, double y) {
                         "seam " + std::to_string(d.seam) + ": branch angle, deg",
                         "fitted - nominal, mm"};
     std::string svg = svg_axes(axes, "Fitted less nominal saddle along the seam");
-    svg.insert(4, " y=\"" + decimal(y, 0) + "\" width=\"" + decimal(kWidth, 0) + "\" height=\"" + decimal(kHeight, 0) +
-                      "\"");  // after "<svg"
+    svg.insert(4, " y=\"" + decimal(y, 0) + "\" width=\"" + decimal(kCurveWidth, 0) + "\" height=\"" +
+                      decimal(kCurveHeight, 0) + "\"");  // after "<svg"
     return svg + svg_band(axes, low, high, "sigma") + svg_line(axes, branch, "flank1") +
            svg_line(axes, header, "flank2") + svg_line(axes, distance, "value") + svg_end();
 }
@@ -148,14 +148,14 @@ std::string saddle_difference_svg(const std::vector<SaddleDifference>& differenc
     double y = 0;
     for (const SaddleDifference& d : differences) {
         plots += plot(d, y);
-        y += kHeight + kGap;
+        y += kCurveHeight + kCurveGap;
     }
     const std::string legend =
         "<text x=\"80\" y=\"" + decimal(y, 0) +
         "\"><tspan fill=\"#16324f\">distance square to travel, with 1 sigma</tspan> <tspan fill=\"#c2571a\">off the "
         "branch's wall</tspan> <tspan fill=\"#2c8a8a\">off the header's wall</tspan></text>";
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(kWidth, 0) + ' ' +
-           decimal(y + kGap, 0) + "\"><style>" + std::string(kStyle) + "</style>" + plots + legend + svg_end();
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + decimal(kCurveWidth, 0) + ' ' +
+           decimal(y + kCurveGap, 0) + "\"><style>" + std::string(kStyle) + "</style>" + plots + legend + svg_end();
 }
 
 }  // namespace seampath

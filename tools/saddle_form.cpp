@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
 // Points of the seam that are laid on the saddle, and steps of Gauss and Newton for it.
-constexpr int kPoints = 180, kSteps = 12;
+constexpr int kPoints = 180, kFormSteps = 12;
 
 // Of the mean square lever: keeps turns that a seam does not feel, such as that of a circle in itself, out of a step.
 constexpr double kDamping = 1e-9;
@@ -87,7 +87,7 @@ Isometry3d saddle_from_seam(const CubicBSpline& seam, const SaddleCurve& saddle)
         places.push_back(saddle.at(saddle.theta(s)).p);
     }
     Isometry3d T = rigid_through(points, places);
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kFormSteps; ++step) {
         T = displaced(T, step_towards(saddle, T, points, station), Vector3d::Zero());
     }
     return T;
