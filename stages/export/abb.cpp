@@ -10,7 +10,7 @@
 /// the arm is known. With seam and weld data named: ArcLStart, ArcL, ArcC, ArcLEnd; without: MoveL, MoveC. Tool, work
 /// object, zone, seam, weld and weave data are referred to by name and live on the controller.
 namespace seampath::exporting {
-namespace {
+namespace abb_writer {
 
 constexpr std::size_t kMaxLines = 5000;      // of a module; a teach pendant's editor copes with these
 constexpr std::size_t kMaxName = 32;         // characters of an identifier
@@ -242,9 +242,19 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return files;
 }
 
-}  // namespace
+}  // namespace abb_writer
 
-constinit const Format kAbb{"abb", kRounding_mm, kMaxCoordinate_mm, 0,     true,    true, Axes::air,
-                            true,  told,         problems,          write, read_abb};
+constinit const Format kAbb{"abb",
+                            abb_writer::kRounding_mm,
+                            abb_writer::kMaxCoordinate_mm,
+                            0,
+                            true,
+                            true,
+                            Axes::air,
+                            true,
+                            abb_writer::told,
+                            abb_writer::problems,
+                            abb_writer::write,
+                            read_abb};
 
 }  // namespace seampath::exporting

@@ -8,7 +8,7 @@
 /// Reads RAPID modules as a controller would: data declarations, procedures, and from main on the calls and moves.
 /// Knows of the language what a program of moves may hold; anything else is an error.
 namespace seampath::exporting {
-namespace {
+namespace abb_reader {
 
 // A literal, an aggregate in brackets or the name of data.
 struct Value {
@@ -260,10 +260,10 @@ private:
     bool object_frame_ = false;
 };
 
-}  // namespace
+}  // namespace abb_reader
 
 std::vector<Target> read_abb(const std::vector<TextFile>& files) {
-    return Controller(files).targets;
+    return abb_reader::Controller(files).targets;
 }
 
 }  // namespace seampath::exporting

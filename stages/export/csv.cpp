@@ -11,7 +11,7 @@
 /// waypoints.csv: comment lines that say frame, unit and quaternion order, a line of column names, a line a waypoint.
 /// Numbers are in their shortest exact form, so nothing is rounded.
 namespace seampath::exporting {
-namespace {
+namespace csv_format {
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
@@ -116,9 +116,10 @@ std::vector<Target> read(const std::vector<TextFile>& files) {
     return targets;
 }
 
-}  // namespace
+}  // namespace csv_format
 
-constinit const Format kCsv{"csv",      0,    kAnywhere,        0,           false, false,
-                            Axes::none, true, tells_everything, no_problems, write, read};
+constinit const Format kCsv{
+    "csv",           0, kAnywhere, 0, false, false, Axes::none, true, tells_everything, no_problems, csv_format::write,
+    csv_format::read};
 
 }  // namespace seampath::exporting

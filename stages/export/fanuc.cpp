@@ -16,7 +16,7 @@
 /// Through the air axis angles where the arm is known.
 /// Above 9999 lines a main program and parts of whole welds.
 namespace seampath::exporting {
-namespace {
+namespace fanuc_writer {
 
 constexpr std::size_t kMaxLines = 9999;
 constexpr std::size_t kMaxProgramName = 32;  // of 36: leaves room for "_123"
@@ -286,9 +286,19 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return jobs<Writer>(program, options, {kMaxLines, "fanuc", "  CALL "}, set_up, file);
 }
 
-}  // namespace
+}  // namespace fanuc_writer
 
-constinit const Format kFanuc{"fanuc", kRounding_mm, kMaxCoordinate_mm, 0,     true,      true, Axes::air,
-                              true,    told,         problems,          write, read_fanuc};
+constinit const Format kFanuc{"fanuc",
+                              fanuc_writer::kRounding_mm,
+                              fanuc_writer::kMaxCoordinate_mm,
+                              0,
+                              true,
+                              true,
+                              Axes::air,
+                              true,
+                              fanuc_writer::told,
+                              fanuc_writer::problems,
+                              fanuc_writer::write,
+                              read_fanuc};
 
 }  // namespace seampath::exporting

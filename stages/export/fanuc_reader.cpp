@@ -9,7 +9,7 @@
 /// Reads FANUC TP programs as a controller would load and run them: attributes, numbered instructions, positions of
 /// group 1 in the user and tool frame that are active. Anything else is an error.
 namespace seampath::exporting {
-namespace {
+namespace fanuc_reader {
 
 constexpr std::size_t kLongestRemark = 32;
 
@@ -155,10 +155,10 @@ private:
     bool arc_ = false, weave_ = false;
 };
 
-}  // namespace
+}  // namespace fanuc_reader
 
 std::vector<Target> read_fanuc(const std::vector<TextFile>& files) {
-    return Controller(files).targets;
+    return fanuc_reader::Controller(files).targets;
 }
 
 }  // namespace seampath::exporting

@@ -7,7 +7,7 @@
 /// waypoints.json: a head with frame, units and quaternion order, then the waypoints with the columns of waypoints.csv.
 /// Numbers are in their shortest exact form, so nothing is rounded.
 namespace seampath::exporting {
-namespace {
+namespace json_format {
 
 std::string pair(std::string_view key, const std::string& value) {
     return "\"" + std::string(key) + "\":" + value;
@@ -149,9 +149,19 @@ std::vector<Target> read(const std::vector<TextFile>& files) {
     return targets;
 }
 
-}  // namespace
+}  // namespace json_format
 
-constinit const Format kJson{"json",     0,    kAnywhere,        0,           false, false,
-                             Axes::none, true, tells_everything, no_problems, write, read};
+constinit const Format kJson{"json",
+                             0,
+                             kAnywhere,
+                             0,
+                             false,
+                             false,
+                             Axes::none,
+                             true,
+                             tells_everything,
+                             no_problems,
+                             json_format::write,
+                             json_format::read};
 
 }  // namespace seampath::exporting

@@ -12,7 +12,7 @@
 /// PTP to axis angles where the arm is known. LIN and CIRC with C_DIS along welds, or spline blocks. The arc is struck
 /// and ended by sub-programs of the user: what ArcTech's own inline forms hold depends on its version.
 namespace seampath::exporting {
-namespace {
+namespace kuka_writer {
 
 constexpr std::size_t kMaxLines = 1400;  // what a teach pendant's editor copes with
 constexpr std::size_t kMaxName = 24;
@@ -221,9 +221,19 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return files;
 }
 
-}  // namespace
+}  // namespace kuka_writer
 
-constinit const Format kKuka{"kuka", kRounding_mm, kMaxCoordinate_mm, 0,     true,     true, Axes::air,
-                             true,   told,         problems,          write, read_kuka};
+constinit const Format kKuka{"kuka",
+                             kuka_writer::kRounding_mm,
+                             kuka_writer::kMaxCoordinate_mm,
+                             0,
+                             true,
+                             true,
+                             Axes::air,
+                             true,
+                             kuka_writer::told,
+                             kuka_writer::problems,
+                             kuka_writer::write,
+                             read_kuka};
 
 }  // namespace seampath::exporting

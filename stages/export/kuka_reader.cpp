@@ -9,7 +9,7 @@
 /// Reads KRL modules as a controller would: frames from the .dat, statements of the .src line by line, calls into other
 /// modules. A call of what is in none of the files strikes or ends the arc, in turn. Anything else is an error.
 namespace seampath::exporting {
-namespace {
+namespace kuka_reader {
 
 constexpr std::size_t kLongestName = 24;
 
@@ -333,10 +333,10 @@ private:
     bool even_ = false, even_on_arcs_ = false, spline_ = false, exact_ = false, waited_ = false;
 };
 
-}  // namespace
+}  // namespace kuka_reader
 
 std::vector<Target> read_kuka(const std::vector<TextFile>& files) {
-    return Controller(files).targets;
+    return kuka_reader::Controller(files).targets;
 }
 
 }  // namespace seampath::exporting

@@ -12,7 +12,7 @@
 /// turn, and a move on which that is not the even rotation from pose to pose is divided. Air in exact path mode, welds
 /// with G64. All moves are G1: G2 and G3 know the planes of the axes only.
 namespace seampath::exporting {
-namespace {
+namespace linuxcnc_writer {
 
 constexpr std::size_t kMaxName = 64;
 constexpr double kRounding_mm = 0.00005;
@@ -156,10 +156,20 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return {{options.program_name + ".ngc", text + "M2\n"}};
 }
 
-}  // namespace
+}  // namespace linuxcnc_writer
 
-constinit const Format kLinuxcnc{
-    "linuxcnc", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,         false,  Axes::none,
-    true,       told,         problems,          write,          read_linuxcnc, prepare};
+constinit const Format kLinuxcnc{"linuxcnc",
+                                 linuxcnc_writer::kRounding_mm,
+                                 linuxcnc_writer::kMaxCoordinate_mm,
+                                 linuxcnc_writer::kMinSpeed_mm_s,
+                                 false,
+                                 false,
+                                 Axes::none,
+                                 true,
+                                 linuxcnc_writer::told,
+                                 linuxcnc_writer::problems,
+                                 linuxcnc_writer::write,
+                                 read_linuxcnc,
+                                 linuxcnc_writer::prepare};
 
 }  // namespace seampath::exporting

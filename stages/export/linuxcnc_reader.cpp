@@ -7,7 +7,7 @@
 /// Reads G-code as LinuxCNC's interpreter would: blocks of words, modal groups, modal coordinates and feed. Anything
 /// but what a program of straight moves may hold is an error.
 namespace seampath::exporting {
-namespace {
+namespace linuxcnc_reader {
 
 constexpr std::size_t kLongestLine = 252;
 
@@ -150,10 +150,10 @@ private:
     bool arc_ = false, ended_ = false;
 };
 
-}  // namespace
+}  // namespace linuxcnc_reader
 
 std::vector<Target> read_linuxcnc(const std::vector<TextFile>& files) {
-    return Interpreter(files.at(0)).targets;
+    return linuxcnc_reader::Interpreter(files.at(0)).targets;
 }
 
 }  // namespace seampath::exporting

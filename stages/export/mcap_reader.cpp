@@ -7,7 +7,7 @@
 
 /// Reads MCAP from its specification: every record once through, lengths held to what is there.
 namespace seampath::exporting {
-namespace {
+namespace mcap_reader {
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
@@ -202,10 +202,10 @@ private:
     bool header_ = false, in_chunk_ = false, data_end_ = false, footer_ = false;
 };
 
-}  // namespace
+}  // namespace mcap_reader
 
 Bag read_mcap(std::string_view bytes, const std::string& file_name) {
-    return Reader(bytes, file_name).bag;
+    return mcap_reader::Reader(bytes, file_name).bag;
 }
 
 }  // namespace seampath::exporting

@@ -5,7 +5,7 @@
 /// Tool paths of noether (ros-industrial) as YAML: a list of paths, one a weld, of a list of segments, one each, of
 /// poses x, y, z in metres and qw, qx, qy, qz. Speeds, and the ways to and from a weld, are its planner's.
 namespace seampath::exporting {
-namespace {
+namespace noether_writer {
 
 constexpr std::size_t kMaxName = 64;
 constexpr double kRounding_mm = 5e-10;  // twelve decimals of a metre
@@ -45,9 +45,20 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return {{options.program_name + "_tool_paths.yaml", text + "]\n"}};
 }
 
-}  // namespace
+}  // namespace noether_writer
 
-constinit const Format kNoether{"noether", kRounding_mm, kAnywhere, 0,     false,        false,  Axes::none,
-                                false,     told,         problems,  write, read_noether, prepare};
+constinit const Format kNoether{"noether",
+                                noether_writer::kRounding_mm,
+                                kAnywhere,
+                                0,
+                                false,
+                                false,
+                                Axes::none,
+                                false,
+                                noether_writer::told,
+                                noether_writer::problems,
+                                noether_writer::write,
+                                read_noether,
+                                noether_writer::prepare};
 
 }  // namespace seampath::exporting

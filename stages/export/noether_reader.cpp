@@ -7,7 +7,7 @@
 
 /// Reads noether's YAML as its serialization does: paths of segments of poses, each member there. A path is a weld.
 namespace seampath::exporting {
-namespace {
+namespace noether_reader {
 
 Target pose(Scanner& scan) {
     scan.expect('{');
@@ -36,9 +36,10 @@ Target pose(Scanner& scan) {
     return target;
 }
 
-}  // namespace
+}  // namespace noether_reader
 
 std::vector<Target> read_noether(const std::vector<TextFile>& files) {
+    using namespace noether_reader;
     Scanner scan(files.at(0), '#');
     std::vector<Target> targets;
     scan.expect('[');

@@ -14,7 +14,7 @@
 /// quaternions x, y, z, w. A time stamp of 0, so that the YAML fits ROS 1 as well, says nothing of when. The way to the
 /// first pose is left to the planner.
 namespace seampath::exporting {
-namespace {
+namespace ros_writer {
 
 constexpr std::size_t kMaxName = 64;
 constexpr double kRounding_mm = 5e-10;  // of the YAML: twelve decimals of a metre
@@ -313,9 +313,19 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return files;
 }
 
-}  // namespace
+}  // namespace ros_writer
 
-constinit const Format kRos{"ros",     kRounding_mm, kAnywhere, 1e-6,     true,  false,
-                            Axes::all, true,         told,      problems, write, read_ros};
+constinit const Format kRos{"ros",
+                            ros_writer::kRounding_mm,
+                            kAnywhere,
+                            1e-6,
+                            true,
+                            false,
+                            Axes::all,
+                            true,
+                            ros_writer::told,
+                            ros_writer::problems,
+                            ros_writer::write,
+                            read_ros};
 
 }  // namespace seampath::exporting

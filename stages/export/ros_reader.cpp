@@ -15,7 +15,7 @@
 /// fields of their types, which must agree; times of the arc from the bag. Speeds are the trajectory's velocities, and
 /// must be what lengths and times say.
 namespace seampath::exporting {
-namespace {
+namespace ros_reader {
 
 struct Pose {
     Eigen::Vector3d p;
@@ -272,9 +272,10 @@ void share_travel(const std::vector<AxisPoint>& travel, const std::vector<Point>
     require(next == travel.size(), "the arm's end with the tool's");
 }
 
-}  // namespace
+}  // namespace ros_reader
 
 std::vector<Target> read_ros(const std::vector<TextFile>& files) {
+    using namespace ros_reader;
     require(files.size() == 3 || files.size() == 4, "three files, or four with an arm");
     Messages yaml = from_yaml(files[0], files[1]);
     if (files.size() == 4) {

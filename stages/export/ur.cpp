@@ -11,7 +11,7 @@
 /// decimals, m/s with 6. Weld points are movep (constant tool speed) and movec, with blends that can't overlap; all
 /// else is movel, and through the air movej where the arm is known.
 namespace seampath::exporting {
-namespace {
+namespace ur_writer {
 
 constexpr std::size_t kMaxName = 64;
 constexpr double kRounding_mm = 0.0005;
@@ -150,9 +150,10 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return {{options.program_name + ".script", text + "end\n"}};
 }
 
-}  // namespace
+}  // namespace ur_writer
 
-constinit const Format kUr{"ur", kRounding_mm, kMaxCoordinate_mm, kMinSpeed_mm_s, false,  true, Axes::air,
-                           true, told,         problems,          write,          read_ur};
+constinit const Format kUr{
+    "ur", ur_writer::kRounding_mm, ur_writer::kMaxCoordinate_mm, ur_writer::kMinSpeed_mm_s, false,  true, Axes::air,
+    true, ur_writer::told,         ur_writer::problems,          ur_writer::write,          read_ur};
 
 }  // namespace seampath::exporting

@@ -9,7 +9,7 @@
 /// Reads a URScript function of moves: metres, rad and m/s, rotation vectors, defaults of the official manual, outputs
 /// that a weld hangs on. Refuses what a controller would skip or refuse.
 namespace seampath::exporting {
-namespace {
+namespace ur_reader {
 
 struct Value {
     std::vector<double> pose;  // of p[...], or empty
@@ -210,10 +210,10 @@ private:
     bool arc_ = false;
 };
 
-}  // namespace
+}  // namespace ur_reader
 
 std::vector<Target> read_ur(const std::vector<TextFile>& files) {
-    return Controller(files.at(0)).targets;
+    return ur_reader::Controller(files.at(0)).targets;
 }
 
 }  // namespace seampath::exporting

@@ -14,7 +14,7 @@
 /// parts two of them. Through the air pulses where the arm is known. Arc and weaving by file numbers. Above 2000 lines
 /// a main job and parts of whole welds.
 namespace seampath::exporting {
-namespace {
+namespace yaskawa_writer {
 
 constexpr std::size_t kMaxLines = 2000;      // of instructions
 constexpr std::size_t kMaxProgramName = 28;  // of 32: leaves room for "_123"
@@ -233,9 +233,19 @@ std::vector<TextFile> write(const Program& program, const ExportOptions& options
     return jobs<Writer>(program, options, {kMaxLines, "yaskawa", "CALL JOB:"}, set_up, file);
 }
 
-}  // namespace
+}  // namespace yaskawa_writer
 
-constinit const Format kYaskawa{"yaskawa", kRounding_mm, kMaxCoordinate_mm, 0,     true,        true, Axes::air,
-                                true,      told,         problems,          write, read_yaskawa};
+constinit const Format kYaskawa{"yaskawa",
+                                yaskawa_writer::kRounding_mm,
+                                yaskawa_writer::kMaxCoordinate_mm,
+                                0,
+                                true,
+                                true,
+                                Axes::air,
+                                true,
+                                yaskawa_writer::told,
+                                yaskawa_writer::problems,
+                                yaskawa_writer::write,
+                                read_yaskawa};
 
 }  // namespace seampath::exporting

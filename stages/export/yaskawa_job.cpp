@@ -5,7 +5,7 @@
 namespace seampath::exporting {
 namespace {
 
-constexpr std::size_t kLongestName = 32;
+constexpr std::size_t kLongestJobName = 32;
 constexpr std::size_t kLongestComment = 32;
 
 // A line that begins so; what follows is left.
@@ -121,7 +121,7 @@ YaskawaJob load_yaskawa(const TextFile& file) {
     heading_line(scan, "/JOB");
     heading(scan, "//NAME");
     job.name = scan.name();
-    require(job.name.size() <= kLongestName && file.name == job.name + ".jbi", scan,
+    require(job.name.size() <= kLongestJobName && file.name == job.name + ".jbi", scan,
             "the file's name, of at most 32 characters");
     scan.end_line();
     heading_line(scan, "//POS");

@@ -12,7 +12,7 @@
 /// calls of other jobs. What V= means is no part of a job: the comment that tells it is held to. Anything else is an
 /// error.
 namespace seampath::exporting {
-namespace {
+namespace yaskawa_reader {
 
 constexpr std::size_t kLongestComment = 32;
 
@@ -202,10 +202,10 @@ private:
     bool arc_ = false, weave_ = false;
 };
 
-}  // namespace
+}  // namespace yaskawa_reader
 
 std::vector<Target> read_yaskawa(const std::vector<TextFile>& files) {
-    return Controller(files).targets;
+    return yaskawa_reader::Controller(files).targets;
 }
 
 }  // namespace seampath::exporting
