@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 enum StripeStream : std::uint64_t { kPixelNoise = 50, kSpeckle, kColumnLoss };
 
-constexpr double kStripeReach = 4;        // 1-sigmas: beyond, a Gaussian is a tenth of a grey value
+constexpr double kStripeReach = 4;  // 1-sigmas: beyond, a Gaussian is a tenth of a grey value
 constexpr double kFwhm = 2.354820;  // of a Gaussian: 2 sqrt(2 log 2)
 
 double squared_distance(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
