@@ -14,7 +14,7 @@ constexpr double kMostScale = 1.3;       // of its residuals, in those of the wi
 constexpr double kMedianSquare = 0.455;  // median of the square of a normal variable
 constexpr double kRipple = 0.25;         // of its noise, rms, by which a scanner bends smooth surfaces
 constexpr double kStandsOut = 16;        // squared: a place this many variances off the surface is of another one
-constexpr double kMostAstray = 9;            // squared, of a window's surface off the whole one, in variances of both
+constexpr double kMostAstray = 9;        // squared, of a window's surface off the whole one, in variances of both
 
 /// Normal equations of a polynomial of the residuals over the distance from the seam.
 struct Profile {
