@@ -102,7 +102,9 @@ LevelStep step_by_level(std::span<const Sums> levels, double length, double weak
         const Matrix6 H = D.asDiagonal() * level.H * D.asDiagonal();
         const double share = H.trace() / 6;
         mean += share;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(open.transpose() * H * open);
+        // A matrix first, so that one solver is compiled for all.
+        const Eigen::MatrixXd left_open = open.transpose() * H * open;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(left_open);
         const Eigen::Index k = open.cols();
         const auto weak = std::count_if(eigen.eigenvalues().begin(), eigen.eigenvalues().end(),
                                         [&](double value) { return !(value > weak_ratio * share); });

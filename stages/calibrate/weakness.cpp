@@ -55,7 +55,8 @@ std::vector<Weakness> weaknesses(const Solution& s) {
         return named;
     }
     const Eigen::MatrixXd turns = s.weak.bottomRows<3>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(turns.transpose() * turns);
+    const Eigen::MatrixXd squares = turns.transpose() * turns;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(squares);
     const Eigen::MatrixXd V = eigen.eigenvectors();
     for (Eigen::Index i = 0; i < s.weak.cols(); ++i) {
         Weakness weak = weakness_of(s.weak * V.col(i), s);

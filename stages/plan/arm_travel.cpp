@@ -82,9 +82,7 @@ public:
             turn_waypoints();
             if (make_samples()) {
                 judge();
-                take_times();
                 plan_.waypoints = std::move(turned_);
-                plan_.duration_s = result_.duration_s;
             } else {
                 result_.samples.clear();
             }
@@ -232,15 +230,6 @@ private:
         }
         time += move.time_s.back();
         return true;
-    }
-
-    /// The waypoints are passed when the arm passes them, which goes through the air by its axes.
-    void take_times() {
-        for (const ArmSample& s : result_.samples) {
-            if (s.waypoint >= 0) {
-                turned_[static_cast<std::size_t>(s.waypoint)].time_s = s.time_s;
-            }
-        }
     }
 
     std::optional<JointAngles> posture_at(const Waypoint& at, const JointAngles& middle) const {

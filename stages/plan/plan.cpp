@@ -127,9 +127,15 @@ void join(const std::vector<std::vector<Waypoint>>& welds, const PlanOptions& op
     }
 }
 
-// After the torch was turned about its wire.
+// After the torch was turned about its wire. An arm that makes the travel passes the waypoints in its own time.
 void measure_again(Plan& plan) {
     number_and_time(plan.waypoints);
+    for (const ArmSample& s : plan.arm->samples) {
+        if (s.waypoint >= 0) {
+            plan.waypoints[static_cast<std::size_t>(s.waypoint)].time_s = s.time_s;
+        }
+    }
+    plan.duration_s = plan.waypoints.back().time_s;
     plan.max_turn_deg = 0;
     for (std::size_t k = 1; k < plan.waypoints.size(); ++k) {
         const Waypoint &from = plan.waypoints[k - 1], &to = plan.waypoints[k];
