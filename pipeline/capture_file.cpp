@@ -29,11 +29,14 @@ public:
     CaptureObject(const Json& value, std::string place, std::vector<std::string>& problems,
                   std::vector<std::string_view> keys)
         : value_(value), place_(std::move(place)), problems_(problems) {
+        if (value.is_null()) {
+            return;  // every key of it will be missing
+        }
         if (!value.is_object()) {
             complain("", "is " + json_excerpt(value) + "; an object was needed");
             return;
         }
-        for (const auto& [key, member] : value.items()) {
+        for (const auto& [key, given] : value.items()) {
             if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
                 complain(key, "there is no such key" + hint(key, keys));
             }
