@@ -21,8 +21,9 @@ Scene make_tee(const SceneOptions& o) {
     const Vector3d side(0, c, -s);
     const double half_length = *o.length_mm / 2;
     const double half_thickness = *o.thickness_mm / 2;
+    const double half_foot = half_thickness / c;
     Scene scene;
-    add_plate(scene, half_length, half_thickness / c + *o.margin_mm, o);
+    add_plate(scene, half_length, half_foot + *o.margin_mm, o);
     add_solid(scene, {PlaneShape{half_thickness * side, side}, PlaneShape{-half_thickness * side, -side},
                       PlaneShape{*o.height_mm * up, up}, PlaneShape{Vector3d::Zero(), -Vector3d::UnitZ()},
                       PlaneShape{half_length * Vector3d::UnitX(), Vector3d::UnitX()},
@@ -31,7 +32,7 @@ Scene make_tee(const SceneOptions& o) {
     for (const double sign : {1.0, -1.0}) {
         scene.box.extend(*o.height_mm * up + sign * half_thickness * side);
         add_seam(scene, JointKind::fillet, false, -half_length, half_length, [&](double x) {
-            return CurvePoint{{x, sign * half_thickness / c, 0}, Vector3d::UnitZ(), sign * side};
+            return CurvePoint{{x, sign * half_foot, 0}, Vector3d::UnitZ(), sign * side};
         });
     }
     return scene;

@@ -19,7 +19,7 @@ constexpr double kMostPixels = 1e8;     // of one view; each takes about 60 byte
 
 /// Direction from the part to the sensor.
 Vector3d draw_direction(const Scene& scene, const ScannerOptions& o, const Random& placing, int index) {
-    const auto draw = static_cast<std::uint64_t>(2 * index);
+    const std::uint64_t draw = 2 * static_cast<std::uint64_t>(index);
     // The first station has the middle between its two eyes before the joint.
     const double azimuth = 2 * portable::kPi * index / o.views +
                            radians(placing.uniform(draw, -kAzimuthJitter, kAzimuthJitter) - o.triangulation_deg / 2);

@@ -43,7 +43,7 @@ std::string assign_number(double& target, const Json& value, const Bounds& bound
         return json_excerpt(value) + " is not a number";
     }
     const auto number = value.get<double>();
-    const std::string problem = bounds_problem(number, bounds);
+    std::string problem = bounds_problem(number, bounds);
     if (problem.empty()) {
         target = number;
     }
@@ -59,7 +59,7 @@ std::string assign_int(int& target, const Json& value, const Bounds& bounds) {
     held.low = std::max<double>(held.low, std::numeric_limits<int>::min());
     held.high = std::min<double>(held.high, std::numeric_limits<int>::max());
     const bool fits = std::abs(number) <= std::numeric_limits<int>::max();
-    const std::string problem = bounds_problem(number, fits ? bounds : held);
+    std::string problem = bounds_problem(number, fits ? bounds : held);
     if (problem.empty()) {
         target = static_cast<int>(number);
     }
@@ -152,7 +152,7 @@ std::string assign(const Field& field, const Json& value) {
                                  [&](double* target) { return assign_number(*target, value, field.bounds); },
                                  [&](std::optional<double>* target) {
                                      double number = 0;
-                                     const std::string problem =
+                                     std::string problem =
                                          value.is_null() ? "" : assign_number(number, value, field.bounds);
                                      if (problem.empty()) {
                                          *target = value.is_null() ? std::nullopt : std::optional(number);

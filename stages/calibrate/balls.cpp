@@ -80,14 +80,14 @@ bool settle(const std::vector<Vector3d>& points, double radius, double scale, Ve
 
 // Share of the sphere that its points cover, by cells of about equal area.
 double cover(const std::vector<Vector3d>& points, const Vector3d& centre) {
-    constexpr int kRings = 8, kSectors = 16;
+    constexpr std::size_t kRings = 8, kSectors = 16;
     std::array<bool, kRings * kSectors> seen{};
     for (const auto& p : points) {
         const Vector3d n = (p - centre).normalized();
-        const int ring = std::min(kRings - 1, static_cast<int>((n.z() + 1) / 2 * kRings));
+        const auto ring = std::min(kRings - 1, static_cast<std::size_t>((n.z() + 1) / 2 * kRings));
         const double turn = std::atan2(n.y(), n.x()) / (2 * std::acos(-1.0)) + 0.5;
-        const int sector = std::min(kSectors - 1, static_cast<int>(turn * kSectors));
-        seen[static_cast<std::size_t>(ring * kSectors + sector)] = true;
+        const auto sector = std::min(kSectors - 1, static_cast<std::size_t>(turn * kSectors));
+        seen[ring * kSectors + sector] = true;
     }
     return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / static_cast<double>(seen.size());
 }

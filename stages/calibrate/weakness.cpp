@@ -57,7 +57,7 @@ std::vector<Weakness> weaknesses(const Solution& s) {
     const Eigen::MatrixXd turns = s.weak.bottomRows<3>();
     const Eigen::MatrixXd squares = turns.transpose() * turns;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(squares);
-    const Eigen::MatrixXd V = eigen.eigenvectors();
+    const Eigen::MatrixXd& V = eigen.eigenvectors();
     for (Eigen::Index i = 0; i < s.weak.cols(); ++i) {
         Weakness weak = weakness_of(s.weak * V.col(i), s);
         for (Eigen::Index k = 0; k < V.rows(); ++k) {

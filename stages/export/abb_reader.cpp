@@ -33,7 +33,7 @@ constexpr std::size_t kLongestName = 32;
 
 // Names are not case-sensitive.
 std::string identifier(Scanner& scan) {
-    const std::string name = lower(scan.name());
+    std::string name = lower(scan.name());
     if (!is_identifier(name) || name.size() > kLongestName) {
         scan.fail("an identifier of at most 32 letters, digits and underscores before this place");
     }

@@ -31,17 +31,17 @@ std::string object(const Waypoint& w) {
 struct Value {
     double number = 0;
     std::string text;
-    std::vector<Value> items;
-    std::vector<std::pair<std::string, Value>> members;
+    std::vector<Value> items;        // of an array or an object
+    std::vector<std::string> names;  // of an object's items
 };
 
 Value value(Scanner& scan) {
     Value result;
     if (scan.accept('{')) {
         for (bool more = !scan.accept('}'); more;) {
-            std::string key = scan.quoted();
+            result.names.push_back(scan.quoted());
             scan.expect(':');
-            result.members.emplace_back(std::move(key), value(scan));
+            result.items.push_back(value(scan));
             more = scan.accept(',');
             if (!more) {
                 scan.expect('}');
@@ -68,12 +68,11 @@ public:
     explicit Reader(const Scanner& scan) : scan_(scan) {}
 
     const Value& member(const Value& object, std::string_view key) const {
-        for (const auto& [name, held] : object.members) {
-            if (name == key) {
-                return held;
-            }
+        const auto name = std::find(object.names.begin(), object.names.end(), key);
+        if (name == object.names.end()) {
+            scan_.fail("a member \"" + std::string(key) + "\" before this place");
         }
-        scan_.fail("a member \"" + std::string(key) + "\" before this place");
+        return object.items[static_cast<std::size_t>(name - object.names.begin())];
     }
     double number(const Value& object, std::string_view key) const { return member(object, key).number; }
     void require(const Value& object, std::string_view key, std::string_view text) const {

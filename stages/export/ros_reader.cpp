@@ -128,7 +128,7 @@ public:
     std::string text() {
         const auto size = number<std::uint32_t>();
         require(size >= 1 && size <= data_.size() - at_ && data_[at_ + size - 1] == 0, "a text that ends in a zero");
-        const std::string result = data_.substr(at_, size - 1);
+        std::string result = data_.substr(at_, size - 1);
         at_ += size;
         return result;
     }

@@ -270,7 +270,7 @@ std::string Scanner::name() {
     }
     const std::string_view left = rest();
     const auto end = std::find_if_not(left.begin(), left.end(), is_part_of_name);
-    const std::string result(left.begin(), end);
+    std::string result(left.begin(), end);
     at_ += result.size();
     return result;
 }
@@ -312,7 +312,7 @@ std::string Scanner::quoted() {
     if (end == std::string::npos) {
         fail("a closing quote");
     }
-    const std::string result = file_->text.substr(at_, end - at_);
+    std::string result = file_->text.substr(at_, end - at_);
     at_ = end + 1;
     return result;
 }

@@ -87,7 +87,7 @@ private:
         for (double ahead = step_; ahead <= kMostBridge; ahead += step_) {
             GapPlace guess = last;
             guess.p += ahead * direction * last.t + 0.5 * ahead * ahead * turn;
-            const auto fit = measure(guess, 2);
+            auto fit = measure(guess, 2);
             const double off = fit ? (fit->place.p - guess.p).norm() : 0;
             if (fit && off < 0.25 * last.gap + 0.3 * step_ + 0.02 * ahead &&
                 fit->place.t.dot(last.t) > std::cos(kMostGapTurn) && fit->place.gap > 0.4 * last.gap &&

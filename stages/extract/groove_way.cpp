@@ -33,7 +33,7 @@ GrooveShape moved(GrooveShape shape, const Vector2d& by) {
     return shape;
 }
 
-std::optional<GroovePlace> measure(const Tracker& tracker, GrooveFrame frame, const GrooveShape& guess,
+std::optional<GroovePlace> measure(const Tracker& tracker, const GrooveFrame& frame, const GrooveShape& guess,
                                    const GrooveWindow& window, int rounds) {
     auto fit = fit_groove(tracker.grid, tracker.view_starts, tracker.field.at(frame.p), frame, guess, window, rounds);
     if (!fit) {

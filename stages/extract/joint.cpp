@@ -164,7 +164,7 @@ SeamSurfaces joint_surfaces(const std::array<PooledFlank, 2>& pooled, double reg
     } else {
         for (const int k : {0, 1}) {
             if (n[k] > 0) {
-                covariance.block(k * n[0], k * n[0], n[k], n[k]) =
+                covariance.block(k == 0 ? 0 : n[0], k == 0 ? 0 : n[0], n[k], n[k]) =
                     flanks[static_cast<std::size_t>(k)].surface->covariance();
             }
         }

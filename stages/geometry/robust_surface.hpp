@@ -146,8 +146,8 @@ private:
 
     Sums sums() const {
         Sums s;
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            const auto r = row(shape, frame, points_[i]);
+        for (const auto& p : points_) {
+            const auto r = row(shape, frame, p);
             const double x = r.distance / (kTukey * scale), w = tukey_weight(x);
             if (w > 0) {
                 for (int j = 0; j < kParameters; ++j) {

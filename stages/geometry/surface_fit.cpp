@@ -134,7 +134,7 @@ std::optional<Sphere> sphere_through(Points points) {
 }
 
 // With h along the axis, of a given half angle: |q|^2 - tan^2 h^2 = 2 c.q - 2 tan^2 h0 h + const, h0 that of the apex.
-std::optional<Cone> cone_along(Points points, Vector3d axis, double half_angle) {
+std::optional<Cone> cone_along(Points points, const Vector3d& axis, double half_angle) {
     const Vector3d e0 = axis.unitOrthogonal(), e1 = axis.cross(e0), centroid = detail::mean_of(points);
     const double slope = std::tan(half_angle) * std::tan(half_angle);
     LinearFit<4> cone;

@@ -255,7 +255,7 @@ private:
         for (double roll = 0; roll <= options_.arm_roll_deg * kDegree; roll += kRollStep) {
             for (const double way : {roll, -roll}) {
                 air.q = rolled(q, way);
-                if (const auto posture = posture_at(air, middle)) {
+                if (auto posture = posture_at(air, middle)) {
                     return posture;
                 }
             }

@@ -11,7 +11,7 @@
 namespace seampath::pcd {
 namespace {
 
-constexpr std::size_t kHeaderLimit = 64 * 1024;
+constexpr std::size_t kHeaderLimit = 65536;
 
 /// The counts as they stand in the header, which may leave some out.
 struct Counts {

@@ -6,7 +6,7 @@
 namespace seampath::ply {
 namespace {
 
-constexpr std::size_t kHeaderLimit = 64 * 1024;
+constexpr std::size_t kHeaderLimit = 65536;
 
 std::optional<Scalar> scalar_named(std::string_view name) {
     constexpr std::array<std::array<std::string_view, 2>, 10> kNames{{{"char", "int8"},

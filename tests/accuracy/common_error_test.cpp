@@ -30,7 +30,7 @@ Dataset with_errors(Dataset dataset, const std::function<Vector3d(std::size_t)>&
 TEST(CommonError, IsTheShiftThatAllViewsShareAcrossTheSeam) {
     const Dataset tee = coarse_tee();
     const Vector3d shift(0.4, -0.03, 0.04);  // the seams run along x
-    const Truth moved = moved_with_views(with_errors(tee, [&](std::size_t) { return shift; }));
+    const Truth moved = moved_with_views(with_errors(tee, [&](std::size_t) -> const Vector3d& { return shift; }));
     EXPECT_NEAR(common_error(tee.truth, moved), 0.05, 1e-6);
     for (std::size_t s = 0; s < moved.seams.size(); ++s) {
         const Vector3d by = moved.seams[s].points[7].p - tee.truth.seams[s].points[7].p;

@@ -260,11 +260,11 @@ TEST_F(Folder, FilesThatAreNoTruthAreRefused) {
     std::filesystem::create_directories(folder_);
     const auto file = folder_ / "truth.json";
     EXPECT_THAT([&] { read_truth(file); }, ThrowsMessage<InputError>(HasSubstr("can't open")));
-    for (const char* text :
-         {"", "{", "[]", "{}", "{\"format\":\"seampath truth\",\"version\":1}",
-          "{\"format\":\"seampath truth\",\"version\":1,\"seams\":[{\"closed\":true}]}",
-          "{\"format\":\"seampath truth\",\"version\":1,\"seams\":[{\"closed\":true,\"points_mm\":[[1,2]],"
-          "\"tangents\":[],\"n1\":[],\"n2\":[]}]}"}) {
+    for (
+        const char* text :
+        {"", "{", "[]", "{}", "{\"format\":\"seampath truth\",\"version\":1}",
+         "{\"format\":\"seampath truth\",\"version\":1,\"seams\":[{\"closed\":true}]}",
+         R"({"format":"seampath truth","version":1,"seams":[{"closed":true,"points_mm":[[1,2]],"tangents":[],"n1":[],"n2":[]}]})"}) {
         std::ofstream(file) << text;
         EXPECT_THAT([&] { read_truth(file); }, ThrowsMessage<InputError>(HasSubstr("not a truth file"))) << text;
     }

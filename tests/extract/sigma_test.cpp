@@ -13,7 +13,7 @@ Scan views_of_corner(std::uint64_t seed, int views, double registration) {
     std::vector<Eigen::Vector3f> points;
     const Random random(seed, 77);
     for (int v = 0; v < views; ++v) {
-        const auto draw = static_cast<std::uint64_t>(3 * v);
+        const std::uint64_t draw = 3 * static_cast<std::uint64_t>(v);
         const Eigen::Vector3f shift =
             (registration * Vector3d(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2)))
                 .cast<float>();

@@ -104,7 +104,7 @@ inline Scan scan_of(const PipeScene& s) {
     std::vector<Eigen::Vector3f> points;
     const Random random(s.sampling.seed, 0);
     for (int view = 0; view < s.views; ++view) {
-        const auto draw = static_cast<std::uint64_t>(3 * view);
+        const std::uint64_t draw = 3 * static_cast<std::uint64_t>(view);
         const Eigen::Vector3d shift =
             s.registration * Eigen::Vector3d(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2));
         for (const Eigen::Vector3d& p : view_of(s, view)) {

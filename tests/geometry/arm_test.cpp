@@ -323,7 +323,8 @@ TEST(Urdf, SaysWhatIsWrong) {
         {urdf_with("<child link=\"link_1\"/>", ""), "joint \"joint_1\" has no parent or no child"},
         {urdf_with("xyz=\"0.065 0 0\"", "xyz=\"0.065 0 0.01\""), "only such arms can be solved"}};
     for (const auto& [text, message] : cases) {
-        EXPECT_THAT([&] { arm_from_urdf(text, "a.urdf"); }, ThrowsMessage<InputError>(HasSubstr(message))) << message;
+        EXPECT_THAT([&text = text] { arm_from_urdf(text, "a.urdf"); }, ThrowsMessage<InputError>(HasSubstr(message)))
+            << message;
     }
     EXPECT_THAT([] { load_arm("ur10"); }, ThrowsMessage<InputError>(HasSubstr("did you mean \"ur10e\"?")));
 }

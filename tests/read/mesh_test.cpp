@@ -114,15 +114,15 @@ TEST(ReadMesh, SliversOfACylinderGetTheirShare) {
     const double area = 2 * std::numbers::pi * kRadius * kLength;
     EXPECT_NEAR(static_cast<double>(scan.points.size()), area / 0.25, 2);
     // Points in patches of 2 mm x 2 mm: 16 each, nowhere empty and nowhere double.
-    constexpr int kAround = 31;
-    constexpr int kAlong = 25;
+    constexpr std::size_t kAround = 31;
+    constexpr std::size_t kAlong = 25;
     std::array<int, kAround * kAlong> count{};
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
         const Eigen::Vector3d p = scan.position(i);
         const double turn = (std::atan2(p.y(), p.x()) + std::numbers::pi) / (2 * std::numbers::pi);
-        const int around = std::min(kAround - 1, static_cast<int>(turn * kAround));
-        const int along = std::min(kAlong - 1, static_cast<int>(p.z() / kLength * kAlong));
-        ++count[static_cast<std::size_t>(around * kAlong + along)];
+        const auto around = std::min(kAround - 1, static_cast<std::size_t>(turn * kAround));
+        const auto along = std::min(kAlong - 1, static_cast<std::size_t>(p.z() / kLength * kAlong));
+        ++count[around * kAlong + along];
         ASSERT_GT(scan.normals[i].cast<double>().dot(Eigen::Vector3d(p.x(), p.y(), 0).normalized()), 0.9999);
     }
     EXPECT_GE(*std::min_element(count.begin(), count.end()), 8);

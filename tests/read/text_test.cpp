@@ -13,11 +13,9 @@ constexpr auto kText = ScanFormat::text;
 const std::vector<Eigen::Vector3d> kTwoPoints{{1, 2, 3}, {4, 5, 6}};
 
 TEST(ReadText, EverySeparatorAndLineEnd) {
-    for (const std::string bytes :
-         {"1 2 3\n4 5 6\n", "1,2,3\n4, 5 ,6", "1;2;3;\n4;5;6;\n", "1\t2\t3\r\n4\t5\t6\r\n", "  1  2  3 \n\n\t4 5 6\n\n",
-          "\xEF\xBB\xBF"
-          "1,2,3\n4,5,6\n",
-          "# a comment\n// X Y Z\n1 2 3\n# between\n4 5 6\n", "1.0e0 +2. .3e1\n4 5 6\n"}) {
+    for (const std::string bytes : {"1 2 3\n4 5 6\n", "1,2,3\n4, 5 ,6", "1;2;3;\n4;5;6;\n", "1\t2\t3\r\n4\t5\t6\r\n",
+                                    "  1  2  3 \n\n\t4 5 6\n\n", "\357\273\2771,2,3\n4,5,6\n",
+                                    "# a comment\n// X Y Z\n1 2 3\n# between\n4 5 6\n", "1.0e0 +2. .3e1\n4 5 6\n"}) {
         SCOPED_TRACE(bytes);
         const Scan scan = read_string(bytes, kText);
         EXPECT_EQ(positions(scan), kTwoPoints);

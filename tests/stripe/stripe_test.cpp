@@ -37,7 +37,7 @@ struct Measure {
 };
 
 // Over three seeds.
-Measure measure(const StripePicture& picture, StripeNoise noise) {
+Measure measure(const StripePicture& picture, const StripeNoise& noise) {
     Measure m;
     double points = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {

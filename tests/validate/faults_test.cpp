@@ -56,7 +56,7 @@ Scan scan_of(const Bench& b, std::uint64_t seed, const std::function<double(doub
 
 /// The true seam moved by `moved(x)`: a spline with a control point every fifth of a millimetre or pitch.
 SeamModel model_of(const Bench& b, const std::function<Vector3d(double)>& moved) {
-    const auto count = static_cast<std::size_t>(b.length / std::min(0.2, 0.2 * b.pitch) + 0.5);
+    const auto count = static_cast<std::size_t>(std::lround(b.length / std::min(0.2, 0.2 * b.pitch)));
     SeamModel model;
     for (int k = 0; k < 3; ++k) {
         model.curve.knots.push_back(0);
