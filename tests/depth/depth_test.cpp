@@ -107,7 +107,7 @@ TEST(Depth, RealOrganisedCloudComesBack) {
     const Scan cloud = read(file, {});
     ASSERT_EQ(cloud.width, 640U);
     const CameraModel camera{640, 480, {525, 525}, {319.5, 239.5}, {}};
-    GreyImage image{640, 480, 65535, std::vector<float>(640 * 480, 0)};
+    GreyImage image{640, 480, 65535, std::vector<float>(640UL * 480, 0)};
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         image.value[cloud.pixel[i]] = static_cast<float>(std::round(10 * cloud.position(i).z()));
     }

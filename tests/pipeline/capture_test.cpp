@@ -108,9 +108,9 @@ TEST(Capture, PicturesThatDoNotFitAreRefused) {
     const TestFolder folder;
     const fs::path file = copy_of_capture(folder);
     const fs::path picture = folder.path() / "003.png";
-    write_bytes(picture, png_bytes({320, 240, 255, std::vector<float>(320 * 240, 9)}));
+    write_bytes(picture, png_bytes({320, 240, 255, std::vector<float>(320UL * 240, 9)}));
     EXPECT_THAT(input_error(file), HasSubstr("003.png: is 320 x 240 pixels, but its camera has 640 x 240"));
-    write_bytes(picture, png_bytes({640, 240, 255, std::vector<float>(640 * 240, 2)}));
+    write_bytes(picture, png_bytes({640, 240, 255, std::vector<float>(640UL * 240, 2)}));
     EXPECT_THAT(input_error(file), HasSubstr("003.png: is black: its brightest pixel is 2 of 255"));
 }
 
@@ -150,9 +150,9 @@ TEST(Capture, DepthImageBecomesAScanAndOnlySixteenBitsWill) {
     EXPECT_GT(scan.points.size(), 30000U);
     EXPECT_EQ(scan.mm_per_unit, 0.01);
 
-    write_bytes(folder.path() / "depth.png", png_bytes({320, 240, 255, std::vector<float>(320 * 240, 100)}));
+    write_bytes(folder.path() / "depth.png", png_bytes({320, 240, 255, std::vector<float>(320UL * 240, 100)}));
     EXPECT_THAT(input_error(file), HasSubstr("has 8 bits a pixel; a depth image of 16 was needed"));
-    write_bytes(folder.path() / "depth.png", png_bytes({320, 240, 65535, std::vector<float>(320 * 240, 0)}));
+    write_bytes(folder.path() / "depth.png", png_bytes({320, 240, 65535, std::vector<float>(320UL * 240, 0)}));
     EXPECT_THAT(input_error(file), HasSubstr("is black: no pixel has a depth"));
 }
 

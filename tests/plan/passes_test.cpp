@@ -130,7 +130,7 @@ TEST(Passes, StayInTheGrooveOfASaddle) {
     const SeamModel model = nominal_model(curve, PoseLaw::bisector, 0);
     const auto passes = passes_of(model, 0, fillet(depth, 30));
     ASSERT_GT(passes.size(), 3u);
-    const Cylinder branch = curve.branch();
+    const Cylinder& branch = curve.branch();
     double worst_sum = 0;
     for (const Pass& pass : passes) {
         EXPECT_GT(pass.facts.most_mm2, 1.3 * pass.facts.least_mm2) << "the opening changes";
