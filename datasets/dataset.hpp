@@ -40,9 +40,10 @@ Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, s
                      unsigned threads = 0);
 
 /// Writes the scan (`scan.ply`, or `scan.pcd` when it is organised; binary, x y z as 32-bit floats) and `truth.json`
-/// into the folder, which is made when it is missing. Returns the scan's path. Throws InputError when a file can't be
-/// written.
-std::filesystem::path write_dataset(const Dataset& dataset, const std::filesystem::path& folder);
+/// into the folder, which is made when it is missing; the scan's numbers are in units of so many mm, the truth is in
+/// mm. Returns the scan's path. Throws InputError when a file can't be written.
+std::filesystem::path write_dataset(const Dataset& dataset, const std::filesystem::path& folder,
+                                    double mm_per_unit = 1);
 
 /// Throws InputError when the file is not a truth file.
 Truth read_truth(const std::filesystem::path& file);

@@ -10,6 +10,7 @@
 #include "pipeline/files.hpp"
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -119,25 +120,37 @@ TruthSeam read_seam(const ordered_json& json) {
     return seam;
 }
 
-std::string ply_header(const Dataset& dataset) {
-    return "ply\nformat binary_little_endian 1.0\ncomment lengths in mm\nelement vertex " +
+/// "mm", or "units of 25.4 mm"
+std::string unit_text(double mm_per_unit) {
+    return mm_per_unit == 1 ? "mm" : "units of " + shortest(mm_per_unit) + " mm";
+}
+
+std::string ply_header(const Dataset& dataset, double mm_per_unit) {
+    return "ply\nformat binary_little_endian 1.0\ncomment lengths in " + unit_text(mm_per_unit) + "\nelement vertex " +
            std::to_string(dataset.points.size()) +
            "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
 }
 
-std::string pcd_header(const Dataset& dataset) {
-    return "# .PCD v0.7 - lengths in mm\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-           std::to_string(dataset.width) + "\nHEIGHT " + std::to_string(dataset.height) +
-           "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(dataset.points.size()) + "\nDATA binary\n";
+std::string pcd_header(const Dataset& dataset, double mm_per_unit) {
+    return "# .PCD v0.7 - lengths in " + unit_text(mm_per_unit) +
+           "\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + std::to_string(dataset.width) +
+           "\nHEIGHT " + std::to_string(dataset.height) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " +
+           std::to_string(dataset.points.size()) + "\nDATA binary\n";
 }
 
 }  // namespace
 
-std::filesystem::path write_dataset(const Dataset& dataset, const std::filesystem::path& folder) {
+std::filesystem::path write_dataset(const Dataset& dataset, const std::filesystem::path& folder, double mm_per_unit) {
     static_assert(sizeof(Eigen::Vector3f) == 12 && std::endian::native == std::endian::little);
     const bool organised = dataset.width > 0;
-    std::string scan = organised ? pcd_header(dataset) : ply_header(dataset);
-    scan.append(reinterpret_cast<const char*>(dataset.points.data()), dataset.points.size() * sizeof(Eigen::Vector3f));
+    std::string scan = organised ? pcd_header(dataset, mm_per_unit) : ply_header(dataset, mm_per_unit);
+    std::vector<Eigen::Vector3f> points = dataset.points;
+    if (mm_per_unit != 1) {
+        for (Eigen::Vector3f& p : points) {
+            p = (p.cast<double>() / mm_per_unit).cast<float>();
+        }
+    }
+    scan.append(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Eigen::Vector3f));
     const char* const name = organised ? "scan.pcd" : "scan.ply";
     const RunFolder files(folder);
     files.write(name, scan);

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
+#include "datasets/picture_file.hpp"
 #include "datasets/portable_math.hpp"
 #include "datasets/rng.hpp"
 #include "datasets/rows.hpp"
+#include "pipeline/files.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -82,6 +86,20 @@ GreyImage make_depth_picture(const Scene& scene, const CameraModel& camera, cons
         }
     }
     return image;
+}
+
+std::filesystem::path write_depth_capture(const GreyImage& image, const CameraModel& camera,
+                                          const Eigen::Isometry3d& scene_from_camera, const DepthNoise& noise,
+                                          const std::filesystem::path& folder) {
+    const nlohmann::ordered_json capture{{"kind", "depth"},
+                                         {"camera", camera_json(camera)},
+                                         {"image", "depth.png"},
+                                         {"mm_per_unit", noise.mm_per_unit},
+                                         {"base_from_camera", pose_json(scene_from_camera)}};
+    const RunFolder files(folder);
+    files.write("depth.png", png_bytes(image));
+    files.write("capture.json", capture.dump(2) + "\n");
+    return folder / "capture.json";
 }
 
 Eigen::Isometry3d front_view(const Scene& scene, double distance_mm, double elevation_deg) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 
 #include <Eigen/Geometry>
 
@@ -24,6 +25,12 @@ struct DepthNoise {
 /// none. The same for any number of threads. Depths must be below 65535 units.
 GreyImage make_depth_picture(const Scene& scene, const CameraModel& camera, const Eigen::Isometry3d& scene_from_camera,
                              const DepthNoise& noise, std::uint64_t seed, unsigned threads);
+
+/// Writes depth.png and capture.json into the folder, which is made when it is missing; the base is the scene's frame.
+/// Returns capture.json's path.
+std::filesystem::path write_depth_capture(const GreyImage& image, const CameraModel& camera,
+                                          const Eigen::Isometry3d& scene_from_camera, const DepthNoise& noise,
+                                          const std::filesystem::path& folder);
 
 /// Where a camera stands that looks at the scene's middle from its front, so far away and so steep.
 Eigen::Isometry3d front_view(const Scene& scene, double distance_mm, double elevation_deg);

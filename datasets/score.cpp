@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "stages/geometry/bspline.hpp"
 
@@ -17,6 +18,7 @@ struct Polyline {
     bool closed;
     std::vector<Vector3d> points;
     JointKind kind;
+    std::vector<Vector3d> tangents{};  ///< of a model, one a point; else empty
 
     std::size_t segments() const { return points.size() - (closed ? 0 : 1); }
     const Vector3d& after(std::size_t i) const { return points[(i + 1) % points.size()]; }
@@ -57,6 +59,7 @@ std::vector<TrueCurve> true_curves(const Truth& truth) {
 struct Foot {
     double distance = std::numeric_limits<double>::infinity();
     double station = 0;
+    TruthPoint at{Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitZ(), Vector3d::UnitZ()};
 };
 
 /// Distance from the cubic through two neighbouring samples and their tangents (Hermite), at the foot on the chord.
@@ -69,12 +72,16 @@ Foot foot_on_piece(const TrueCurve& curve, std::size_t i, const Vector3d& p) {
     const double v = 1 - u;
     const Vector3d q =
         v * v * (1 + 2 * u) * a.p + u * u * (1 + 2 * v) * b.p + h * u * v * (v * a.tangent - u * b.tangent);
-    return {(p - q).norm(), curve.station[i] + u * h};
+    return {(p - q).norm(),
+            curve.station[i] + u * h,
+            {q, (v * a.tangent + u * b.tangent).normalized(), (v * a.n1 + u * b.n1).normalized(),
+             (v * a.n2 + u * b.n2).normalized()}};
 }
 
 Foot foot_beyond_end(const TruthPoint& end, double station, const Vector3d& p) {
     const double along = (p - end.p).dot(end.tangent);
-    return {(p - end.p - along * end.tangent).norm(), station + along};
+    const Vector3d q = end.p + along * end.tangent;
+    return {(p - q).norm(), station + along, {q, end.tangent, end.n1, end.n2}};
 }
 
 Foot foot(const TrueCurve& curve, const Vector3d& p) {
@@ -105,7 +112,7 @@ bool corresponds(const TrueCurve& curve, const Foot& foot) {
 
 /// The nearest true seam, at an infinite distance where none corresponds.
 struct Match {
-    double distance = std::numeric_limits<double>::infinity();
+    Foot foot;
     JointKind kind{};
 };
 
@@ -113,8 +120,8 @@ Match match(const std::vector<TrueCurve>& curves, const Vector3d& p) {
     Match nearest;
     for (const TrueCurve& curve : curves) {
         const Foot f = foot(curve, p);
-        if (corresponds(curve, f) && f.distance < nearest.distance) {
-            nearest = {f.distance, curve.seam.kind};
+        if (corresponds(curve, f) && f.distance < nearest.foot.distance) {
+            nearest = {f, curve.seam.kind};
         }
     }
     return nearest;
@@ -130,27 +137,51 @@ double distance_from_line(const Polyline& line, const Vector3d& p) {
     return std::sqrt(nearest);
 }
 
-/// rms, 95th percentile and maximum of the weighted distances.
-void summarise(std::vector<std::pair<double, double>> distance_and_weight, Score& score) {
-    std::sort(distance_and_weight.begin(), distance_and_weight.end());
-    double total = 0;
-    double squares = 0;
-    for (const auto& [distance, weight] : distance_and_weight) {
-        total += weight;
-        squares += weight * distance * distance;
-        score.max_mm = distance;
+/// What one point of a reported curve is off by, and the length that it stands for.
+struct Offset {
+    double distance, weight;
+    double lateral, vertical;
+    double turn_deg;
+};
+
+Offset offset_of(const Polyline& line, std::size_t i, const Foot& foot) {
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    const Vector3d off = line.points[i] - foot.at.p;
+    const Vector3d up = (foot.at.n1 + foot.at.n2).normalized();
+    const double cosine = line.tangents.empty() ? 1 : std::abs(line.tangents[i].dot(foot.at.tangent));
+    return {foot.distance, line.weight(i), off.dot(foot.at.tangent.cross(up)), off.dot(up),
+            kDegrees * std::acos(std::clamp(cosine, -1.0, 1.0))};
+}
+
+double quantile(const std::vector<Offset>& offsets, double Offset::*value, double share) {
+    std::vector<std::pair<double, double>> weighted;
+    for (const Offset& o : offsets) {
+        weighted.emplace_back(o.*value, o.weight);
+    }
+    return weighted_quantile(std::move(weighted), share);
+}
+
+void summarise(const std::vector<Offset>& offsets, Score& score) {
+    double total = 0, squares = 0, lateral = 0, lateral_squares = 0, vertical = 0, vertical_squares = 0;
+    for (const Offset& o : offsets) {
+        total += o.weight;
+        squares += o.weight * o.distance * o.distance;
+        lateral += o.weight * o.lateral;
+        lateral_squares += o.weight * o.lateral * o.lateral;
+        vertical += o.weight * o.vertical;
+        vertical_squares += o.weight * o.vertical * o.vertical;
+        score.max_mm = std::max(score.max_mm, o.distance);
     }
     if (total > 0) {
         score.rms_mm = std::sqrt(squares / total);
+        score.lateral_mean_mm = lateral / total;
+        score.lateral_rms_mm = std::sqrt(lateral_squares / total);
+        score.vertical_mean_mm = vertical / total;
+        score.vertical_rms_mm = std::sqrt(vertical_squares / total);
     }
-    double below = 0;
-    for (const auto& [distance, weight] : distance_and_weight) {
-        below += weight;
-        if (below >= 0.95 * total) {
-            score.p95_mm = distance;
-            break;
-        }
-    }
+    score.p50_mm = quantile(offsets, &Offset::distance, 0.5);
+    score.p95_mm = quantile(offsets, &Offset::distance, 0.95);
+    score.tangent_p95_deg = quantile(offsets, &Offset::turn_deg, 0.95);
 }
 
 double found_length(const TrueCurve& curve, const std::vector<Polyline>& lines) {
@@ -181,7 +212,7 @@ Lengths reported_lengths(const std::vector<TrueCurve>& curves, const std::vector
             for (int k = 0; k < pieces; ++k) {
                 const Vector3d middle = line.points[i] + (k + 0.5) / pieces * (line.after(i) - line.points[i]);
                 const Match seam = match(curves, middle);
-                const bool is_true = std::isfinite(seam.distance);
+                const bool is_true = std::isfinite(seam.foot.distance);
                 (is_true ? lengths.of_seams : lengths.of_nothing) += line.length(i) / pieces;
                 lengths.of_wrong_kind += is_true && seam.kind != line.kind ? line.length(i) / pieces : 0;
             }
@@ -210,16 +241,16 @@ double end_error(const TrueCurve& curve, double end_station, const std::vector<P
 Score compare(const std::vector<Polyline>& lines, const Truth& truth) {
     const std::vector<TrueCurve> curves = true_curves(truth);
     Score score;
-    std::vector<std::pair<double, double>> distances;
+    std::vector<Offset> offsets;
     for (const Polyline& line : lines) {
         for (std::size_t i = 0; i < line.points.size(); ++i) {
-            const double distance = match(curves, line.points[i]).distance;
-            if (std::isfinite(distance)) {
-                distances.emplace_back(distance, line.weight(i));
+            const Foot nearest = match(curves, line.points[i]).foot;
+            if (std::isfinite(nearest.distance)) {
+                offsets.push_back(offset_of(line, i, nearest));
             }
         }
     }
-    summarise(std::move(distances), score);
+    summarise(offsets, score);
     double length = 0;
     double found = 0;
     for (const TrueCurve& curve : curves) {
@@ -245,6 +276,32 @@ Score compare(const std::vector<Polyline>& lines, const Truth& truth) {
 
 }  // namespace
 
+double weighted_quantile(std::vector<std::pair<double, double>> value_and_weight, double share) {
+    std::sort(value_and_weight.begin(), value_and_weight.end());
+    double total = 0;
+    for (const auto& [value, weight] : value_and_weight) {
+        total += weight;
+    }
+    double below = 0;
+    for (const auto& [value, weight] : value_and_weight) {
+        below += weight;
+        if (below >= share * total) {
+            return value;
+        }
+    }
+    return 0;
+}
+
+std::vector<TruthFoot> truth_feet(std::span<const Vector3d> points, const Truth& truth) {
+    const std::vector<TrueCurve> curves = true_curves(truth);
+    std::vector<TruthFoot> feet;
+    for (const Vector3d& p : points) {
+        const Foot nearest = match(curves, p).foot;
+        feet.push_back({nearest.distance, nearest.at});
+    }
+    return feet;
+}
+
 Score score(std::span<const Seam> seams, const Truth& truth) {
     std::vector<Polyline> lines;
     for (const Seam& seam : seams) {
@@ -264,7 +321,9 @@ Score score(std::span<const SeamModel> models, const Truth& truth) {
         const int steps = std::max(1, static_cast<int>(std::ceil(arc.length() / kStep)));
         Polyline line{model.closed, {}, model.kind};
         for (int i = 0; i < steps + (model.closed ? 0 : 1); ++i) {
-            line.points.push_back(position(model.curve, arc.parameter(arc.length() * i / steps)));
+            const double u = arc.parameter(arc.length() * i / steps);
+            line.points.push_back(position(model.curve, u));
+            line.tangents.push_back(tangent(model.curve, u));
         }
         lines.push_back(std::move(line));
     }

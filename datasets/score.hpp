@@ -27,7 +27,27 @@ struct Score {
                                         ///< nearest end of a reported curve; the seam's length when there is none
     double wrong_kind_share = 0;        ///< length near a true seam, reported as another kind of joint than the seam
                                         ///< is, over the true length
+    double p50_mm = 0;
+    /// The distances' two parts in the true section: `vertical` along n1 + n2, out of the joint, `lateral` along
+    /// tangent x (n1 + n2); signed means and rms.
+    double lateral_mean_mm = 0;
+    double lateral_rms_mm = 0;
+    double vertical_mean_mm = 0;
+    double vertical_rms_mm = 0;
+    double tangent_p95_deg = 0;  ///< between a model's tangent and the true one, whichever way it goes, since a scan
+                                 ///< does not say which flank is the first; 0 for extracted points
 };
+
+/// The place of the nearest true seam to a point: its frame there, n1 and n2 unit, and the distance, which is infinite
+/// where no true seam corresponds.
+struct TruthFoot {
+    double distance_mm = 0;
+    TruthPoint at;
+};
+std::vector<TruthFoot> truth_feet(std::span<const Eigen::Vector3d> points, const Truth& truth);
+
+/// The value below which a share of the weights lies; 0 for no values. Values and their weights, in any order.
+double weighted_quantile(std::vector<std::pair<double, double>> value_and_weight, double share);
 
 /// Compares extracted seams, by their points.
 Score score(std::span<const Seam> seams, const Truth& truth);

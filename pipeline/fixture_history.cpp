@@ -1,11 +1,10 @@
 #include "pipeline/fixture_history.hpp"
 
 #include <algorithm>
-#include <memory>
 
 #include <nlohmann/json.hpp>
-#include <sqlite3.h>
 
+#include "pipeline/database.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -14,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kBusy_ms = 5000;
+constexpr const char* kKept = "calibrations";
 
 constexpr const char* kTable =
     "CREATE TABLE IF NOT EXISTS fixture_calibration ("
@@ -26,70 +25,6 @@ constexpr const char* kTable =
 constexpr const char* kColumns =
     "date,fixture,method,appraiser,part,pass,accepted,reason,x_mm,y_mm,z_mm,qw,qx,qy,qz,expanded_mm,work_points,"
     "nominal_sha256,observations_sha256,faults";
-
-/// An open database. Every failure is one of the file, so of the input.
-class Database {
-public:
-    Database(const fs::path& file, int flags) : file_(file) {
-        sqlite3* raw = nullptr;
-        const int status = sqlite3_open_v2(file.c_str(), &raw, flags, nullptr);
-        handle_.reset(raw);
-        check(status);
-        sqlite3_busy_timeout(raw, kBusy_ms);
-    }
-
-    void run(const std::string& sql) { check(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr)); }
-
-    using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
-    Statement prepare(const std::string& sql) {
-        sqlite3_stmt* raw = nullptr;
-        check(sqlite3_prepare_v2(handle_.get(), sql.c_str(), -1, &raw, nullptr));
-        return {raw, sqlite3_finalize};
-    }
-
-    void check(int status) const {
-        if (status != SQLITE_OK && status != SQLITE_DONE && status != SQLITE_ROW) {
-            throw InputError(
-                "history: " + file_.string() + ": " + (handle_ ? sqlite3_errmsg(handle_.get()) : "cannot open") +
-                "; a database that calibrations are written to was needed; check the path and permissions");
-        }
-    }
-
-private:
-    fs::path file_;
-    std::unique_ptr<sqlite3, decltype(&sqlite3_close)> handle_{nullptr, sqlite3_close};
-};
-
-class Binder {
-public:
-    Binder(Database& database, sqlite3_stmt* statement) : database_(database), statement_(statement) {}
-    void text(const std::string& value) {
-        database_.check(
-            sqlite3_bind_text(statement_, ++index_, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
-    }
-    void number(double value) { database_.check(sqlite3_bind_double(statement_, ++index_, value)); }
-    void flag(bool value) { database_.check(sqlite3_bind_int(statement_, ++index_, value)); }
-
-private:
-    Database& database_;
-    sqlite3_stmt* statement_;
-    int index_ = 0;
-};
-
-class Columns {
-public:
-    explicit Columns(sqlite3_stmt* statement) : statement_(statement) {}
-    std::string text() {
-        const auto* value = reinterpret_cast<const char*>(sqlite3_column_text(statement_, next_++));
-        return value ? value : "";
-    }
-    double number() { return sqlite3_column_double(statement_, next_++); }
-    bool flag() { return sqlite3_column_int(statement_, next_++) != 0; }
-
-private:
-    sqlite3_stmt* statement_;
-    int next_ = 0;
-};
 
 std::string work_points_text(const std::vector<WorkPoint>& points) {
     Json list = Json::array();
@@ -144,7 +79,7 @@ HistoryRow row_of(sqlite3_stmt* statement, const fs::path& file) {
 }  // namespace
 
 void add_to_history(const fs::path& file, const HistoryRow& row) {
-    Database database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    Database database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kKept);
     database.run(kTable);
     const auto statement = database.prepare(std::string("INSERT INTO fixture_calibration (") + kColumns +
                                             ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
@@ -172,7 +107,7 @@ std::vector<HistoryRow> read_history(const fs::path& file) {
         throw InputError("history: there is no file " + file.string() +
                          "; the history.db in the --out folder of a calibration was needed");
     }
-    Database database(file, SQLITE_OPEN_READONLY);
+    Database database(file, SQLITE_OPEN_READONLY, kKept);
     const auto statement =
         database.prepare(std::string("SELECT ") + kColumns + " FROM fixture_calibration ORDER BY id");
     std::vector<HistoryRow> rows;

@@ -7,6 +7,7 @@
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
 #include "tools/commands.hpp"
+#include "tools/dataset/suite_commands.hpp"
 
 namespace seampath {
 namespace {
@@ -81,13 +82,14 @@ int list() {
 }  // namespace
 
 Command dataset_command(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("dataset", "scans with known truth");
+    CLI::App* app = program.add_subcommand("dataset", "scans with known truth, and suites of regression cases");
     app->require_subcommand(1);
     app->footer(
         "Examples:\n"
         "  seampath dataset list\n"
         "  seampath dataset make pipe-on-pipe --seed 3 --out data/pipe3\n"
-        "  seampath dataset make tee --preset metrology --set scene.lean_deg=20 --out data/tee\n");
+        "  seampath dataset make tee --preset metrology --set scene.lean_deg=20 --out data/tee\n"
+        "  seampath dataset run datasets/suites/smoke --out out/smoke\n");
     const auto given = std::make_shared<DatasetArguments>();
     const CLI::App* list_app = app->add_subcommand("list", "scenes, scanner presets, and what --set takes");
     CLI::App* make_app = app->add_subcommand("make", "make a scan and its truth");
@@ -101,7 +103,17 @@ Command dataset_command(CLI::App& program) {
         "  seampath dataset make tee --out data/tee\n"
         "  seampath dataset make pipe-on-pipe --preset standard --seed 3 --out data/pipe3\n"
         "  seampath dataset make v-groove --set scene.course=arc --set scene.gap_mm=2 --out data/groove\n");
-    return {app, [given, list_app] { return list_app->parsed() ? list() : make(*given); }};
+    const std::vector<Command> of_suites{dataset_run_command(*app), dataset_compare_command(*app),
+                                         dataset_accept_command(*app), dataset_history_command(*app),
+                                         dataset_case_command(*app)};
+    return {app, [given, list_app, of_suites] {
+                for (const Command& command : of_suites) {
+                    if (command.app->parsed()) {
+                        return command.act();
+                    }
+                }
+                return list_app->parsed() ? list() : make(*given);
+            }};
 }
 
 }  // namespace seampath

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -70,6 +71,34 @@ TEST_P(ScoreOfScene, ShiftIsMeasured) {
     EXPECT_NEAR(s.max_mm, shift, 1e-4);
     EXPECT_NEAR(s.found, 1, 1e-9);
     EXPECT_EQ(s.false_share, 0);
+}
+
+TEST(Score, ErrorsHaveTheirTwoPartsInTheSection) {
+    const Truth truth = truth_of(SceneKind::tee);
+    std::vector<Seam> seams = report_all(truth);
+    for (std::size_t i = 0; i < seams.size(); ++i) {
+        const TruthPoint& at = truth.seams[i].points[0];
+        const Eigen::Vector3d up = (at.n1 + at.n2).normalized();
+        for (SeamPoint& point : seams[i].points) {
+            point.p += 0.03 * up - 0.04 * at.tangent.cross(up);
+        }
+    }
+    const Score s = score(seams, truth);
+    EXPECT_NEAR(s.vertical_mean_mm, 0.03, 1e-9);
+    EXPECT_NEAR(s.vertical_rms_mm, 0.03, 1e-9);
+    EXPECT_NEAR(s.lateral_mean_mm, -0.04, 1e-9);
+    EXPECT_NEAR(s.lateral_rms_mm, 0.04, 1e-9);
+    EXPECT_NEAR(s.p50_mm, 0.05, 1e-9);
+}
+
+TEST(Score, FeetCarryTheTrueFrame) {
+    const Truth truth = truth_of(SceneKind::tee);
+    const TruthPoint& at = truth.seams[0].points[500];
+    const auto feet = truth_feet(std::vector<Eigen::Vector3d>{at.p + 0.2 * at.n1, at.p + 9 * at.n1}, truth);
+    EXPECT_NEAR(feet[0].distance_mm, 0.2, 1e-9);
+    EXPECT_LT((feet[0].at.p - at.p).norm(), 1e-9);
+    EXPECT_LT((feet[0].at.n1 - at.n1).norm() + (feet[0].at.tangent - at.tangent).norm(), 1e-9);
+    EXPECT_TRUE(std::isinf(feet[1].distance_mm));
 }
 
 TEST(Score, DistanceIsFromTheCurveNotFromItsSamples) {
@@ -166,17 +195,30 @@ TEST(Score, OtherKindOfJointIsCounted) {
     EXPECT_EQ(s.false_share, 0);
 }
 
+SeamModel straight_model(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    SeamModel model;
+    const double length = (b - a).norm();
+    model.curve.knots = {0, 0, 0, 0, length, length, length, length};
+    model.curve.control = {a, a + (b - a) / 3, a + (b - a) * 2 / 3, b};
+    return model;
+}
+
+TEST(Score, TangentsOfModelsAreComparedWithTheTrueOnes) {
+    const Truth truth = truth_of(SceneKind::tee);
+    const TruthPoint &first = truth.seams[0].points.front(), &last = truth.seams[0].points.back();
+    const double length = (last.p - first.p).norm();
+    const std::vector<SeamModel> turned{straight_model(first.p, last.p + length * std::tan(0.005) * last.n1)};
+    EXPECT_NEAR(score(turned, truth).tangent_p95_deg, 0.005 * 180 / std::numbers::pi, 1e-6);
+    const std::vector<SeamModel> back{straight_model(last.p, first.p)};
+    EXPECT_NEAR(score(back, truth).tangent_p95_deg, 0, 1e-6) << "either flank may be the first";
+}
+
 TEST(Score, ModelIsComparedByItsCurve) {
     const Truth truth = truth_of(SceneKind::tee);
     std::vector<SeamModel> models;
     for (const TruthSeam& seam : truth.seams) {
-        SeamModel model;
-        const Eigen::Vector3d a = seam.points.front().p + 0.05 * seam.points.front().n1;
-        const Eigen::Vector3d b = seam.points.back().p + 0.05 * seam.points.back().n1;
-        const double length = (b - a).norm();
-        model.curve.knots = {0, 0, 0, 0, length, length, length, length};
-        model.curve.control = {a, a + (b - a) / 3, a + (b - a) * 2 / 3, b};
-        models.push_back(model);
+        models.push_back(straight_model(seam.points.front().p + 0.05 * seam.points.front().n1,
+                                        seam.points.back().p + 0.05 * seam.points.back().n1));
     }
     const Score s = score(models, truth);
     EXPECT_NEAR(s.rms_mm, 0.05, 1e-9);
