@@ -4,6 +4,7 @@
 extern "C" {
 extern const char seampath_viewer_begin[], seampath_viewer_end[];
 extern const char seampath_page_begin[], seampath_page_end[];
+extern const char seampath_sort_begin[], seampath_sort_end[];
 extern const char seampath_style_begin[], seampath_style_end[];
 extern const char seampath_three_begin[], seampath_three_end[];
 }
@@ -15,6 +16,9 @@ std::string_view viewer_script() {
 }
 std::string_view page_script() {
     return {seampath_page_begin, seampath_page_end};
+}
+std::string_view sort_script() {
+    return {seampath_sort_begin, seampath_sort_end};
 }
 std::string_view report_style() {
     return {seampath_style_begin, seampath_style_end};

@@ -7,6 +7,7 @@ namespace seampath {
 
 std::string_view viewer_script();
 std::string_view page_script();
+std::string_view sort_script();
 std::string_view report_style();
 std::string_view three_gzip();  ///< three.js, compressed
 
