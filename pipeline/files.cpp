@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <vector>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "stages/error.hpp"
@@ -80,6 +82,16 @@ void remove_temporaries(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::string time_written(const fs::path& file) {
+    struct stat status {};
+    std::tm utc{};
+    if (stat(file.c_str(), &status) != 0 || gmtime_r(&status.st_mtime, &utc) == nullptr) {
+        return "";
+    }
+    char text[40];
+    return {text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc)};
+}
 
 std::string read_file(const fs::path& file, std::size_t max_bytes, const std::string& who) {
     std::error_code error;

@@ -10,6 +10,9 @@ namespace seampath {
 /// it can't be read, or it is larger.
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes, const std::string& who);
 
+/// When a file was last written, to the minute: "2026-03-31 14:05 UTC". Empty when there is no such file.
+std::string time_written(const std::filesystem::path& file);
+
 /// A folder that one run writes into. Every file appears whole or not at all: it is written under a temporary name in
 /// the same folder, synchronised and renamed. A failed or killed write never leaves a file that looks finished.
 class RunFolder {

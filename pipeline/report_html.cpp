@@ -4,8 +4,11 @@
 #include "pipeline/report.hpp"
 #include "pipeline/report_arm.hpp"
 #include "pipeline/report_assets.hpp"
+#include "pipeline/report_cells.hpp"
+#include "pipeline/report_inspection.hpp"
 #include "pipeline/report_plots.hpp"
 #include "pipeline/report_rows.hpp"
+#include "pipeline/report_sections.hpp"
 #include "pipeline/report_text.hpp"
 #include "pipeline/report_view.hpp"
 
@@ -14,25 +17,6 @@ namespace {
 
 /// More seams than this fold up, save those that failed.
 constexpr std::size_t kUnfolded = 4;
-
-/// A value with the path of its row in report.json and its unrounded value, so that any copy can be checked.
-std::string value_attributes(const ReportRow& row, const std::string& path) {
-    return " data-row=\"" + path + '.' + row.name + "\" data-value=\"" + escape_html(exact(row)) + '"';
-}
-
-std::string cell(const ReportRows& rows, const std::string& path, std::string_view name) {
-    const ReportRow& row = find_row(rows, name);
-    const char* style = std::holds_alternative<std::string>(row.value) ? "" : " class=\"num\"";
-    return "<td" + std::string(style) + value_attributes(row, path) + '>' + escape_html(shown(row)) + "</td>";
-}
-
-std::string badge(bool pass) {
-    return pass ? "<span class=\"badge pass\">PASS</span>" : "<span class=\"badge fail\">FAIL</span>";
-}
-
-std::string heading(std::string_view text, bool number) {
-    return (number ? "<th class=\"num\">" : "<th>") + std::string(text) + "</th>";
-}
 
 std::string header(const Report& report) {
     return "<header><div><div class=\"brand\">SEAMPATH " SEAMPATH_VERSION " · SEAM REPORT</div><h1>" +
@@ -63,64 +47,6 @@ std::string key_figures(const Report& report) {
     return html + "</section>\n";
 }
 
-std::string legend(const ViewScene& scene) {
-    std::string stops;
-    for (const char* colour : kDeviationColours) {
-        stops += std::string(", ") + colour;
-    }
-    const auto item = [](const std::string& paint, const std::string& text) {
-        return "<div class=\"item\"><i style=\"background:" + paint + "\"></i>" + text + "</div>";
-    };
-    const std::string unchecked =
-        "repeating-linear-gradient(90deg, " + std::string(kUncheckedColour) + " 0 6px, transparent 6px 9px)";
-    if (scene.nominal) {
-        return "<div id=\"legend\" class=\"overlay\">" + item(unchecked, "nominal, not checked against a scan") +
-               "</div>";
-    }
-    return "<div id=\"legend\" class=\"overlay\"><span class=\"title\">Deviation from the scan</span><div "
-           "class=\"bar\" "
-           "style=\"background:linear-gradient(90deg" +
-           stops + ")\"></div><div class=\"ends\"><span>0</span><span>" + decimal(scene.scale_mm / 2, 3) +
-           "</span><span>" + decimal(scene.scale_mm, 3) + " mm</span></div>" +
-           item(kOutOfToleranceColour, "out of tolerance") + item(unchecked, "bridged or not checked") + "</div>";
-}
-
-std::string axes_overlay() {
-    std::string svg = "<svg id=\"axes\" class=\"overlay live-only\" viewBox=\"-42 -42 84 84\" aria-hidden=\"true\">";
-    for (const auto& [name, colour] :
-         {std::pair("x", "#b3122a"), std::pair("y", "#176b3a"), std::pair("z", "#1f5f99")}) {
-        svg += std::string("<line id=\"axis-") + name + "\" stroke=\"" + colour +
-               "\" stroke-width=\"2\"/><text id=\"letter-" + name +
-               "\" text-anchor=\"middle\" font-size=\"12\" fill=\"" + colour + "\">" + name + "</text>";
-    }
-    return svg + "</svg>";
-}
-
-std::string toolbar(const ViewScene& scene) {
-    const auto layer = [](const std::string& key, const std::string& label) {
-        return "<label><input type=\"checkbox\" data-layer=\"" + key + "\" checked> " + label + "</label>";
-    };
-    const bool seams = !scene.seams.empty();
-    std::string html = "<div class=\"toolbar\">" + (scene.nominal ? std::string() : layer("scan", "Scan"));
-    if (seams) {
-        html += layer("seam", "Seams") + (scene.nominal ? "" : layer("nodes", "Nodes")) + layer("torch", "Torch");
-    }
-    return html +
-           "<button type=\"button\" id=\"fit\">Fit view</button><span id=\"view-note\">Drag turns, Shift or right "
-           "button "
-           "moves, wheel or pinch zooms" +
-           (seams ? "; a click on a seam in the table flies there" : "") + "</span></div>";
-}
-
-std::string view_section(const ViewScene& scene) {
-    const bool seams = !scene.seams.empty();
-    return "<section><div id=\"view\">" + view_svg(scene) + axes_overlay() + (seams ? legend(scene) : "") +
-           "<div id=\"scale-bar\" class=\"overlay live-only\"></div><div id=\"tip\" class=\"overlay\" "
-           "hidden></div></div>" +
-           toolbar(scene) +
-           "<noscript><p class=\"note-line\">Scripts are off: this is a still picture.</p></noscript></section>\n";
-}
-
 /// A column of the table of seams: the row that it shows and its heading.
 struct Column {
     std::string_view row;
@@ -144,19 +70,20 @@ std::string seam_table(const Report& report) {
     if (report.seams.empty()) {
         return "";
     }
-    std::string html = "<h2>Seams</h2><div class=\"scroll\"><table><thead><tr><th>Seam</th><th>Joint</th>";
+    std::string html =
+        "<h2>Seams</h2><div class=\"scroll\"><table><thead><tr>" + heading("Seam", false) + heading("Joint", false);
     for (const Column& column : kSeamColumns) {
         html += has_row(report.seams.front().rows, column.row) ? heading(column.heading, true) : "";
     }
-    html += "<th>Verdict</th></tr></thead><tbody>";
+    html += heading("Verdict", false) + "</tr></thead><tbody>";
     for (std::size_t i = 0; i < report.seams.size(); ++i) {
         const ReportSeam& seam = report.seams[i];
         const std::string path = "seams." + std::to_string(i);
         const bool closed = std::get<bool>(find_row(seam.rows, "closed").value);
         const ReportRow& kind = find_row(seam.rows, "kind");
-        html += "<tr data-seam=\"" + std::to_string(i) + "\"><td class=\"link\">Seam " + std::to_string(i) +
-                "</td><td" + value_attributes(kind, path) + '>' + escape_html(shown(kind)) +
-                (closed ? ", closed" : ", open") + "</td>";
+        html += "<tr data-seam=\"" + std::to_string(i) + "\"><td><button type=\"button\" class=\"link\">Seam " +
+                std::to_string(i) + "</button></td><td" + value_attributes(kind, path) + '>' +
+                escape_html(shown(kind)) + (closed ? ", closed" : ", open") + "</td>";
         for (const Column& column : kSeamColumns) {
             html += has_row(seam.rows, column.row) ? cell(seam.rows, path, column.row) : "";
         }
@@ -182,7 +109,8 @@ std::string seam_section(const PartResult& part, const Report& report, std::size
     const bool open = !seam.pass || report.seams.size() <= kUnfolded;
     return "<details id=\"seam-" + std::to_string(i) + "\"" + (open ? " open" : "") + "><summary><h3>Seam " +
            std::to_string(i) + "</h3>" + badge(seam.pass) + "<span class=\"soft\">" + escape_html(seam.sentence) +
-           "</span></summary>" + seam_plots(part, i) + facts(seam.rows, "seams." + std::to_string(i)) + "</details>\n";
+           "</span></summary>" + inspection_tables(report, i) + seam_plots(part, i) +
+           facts(seam.rows, "seams." + std::to_string(i)) + "</details>\n";
 }
 
 std::string program_table(const Report& report) {
@@ -191,16 +119,18 @@ std::string program_table(const Report& report) {
     }
     std::string html =
         "<h2>Robot programs</h2><p class=\"soft\">Every file was read back by a reader of its own and compared with "
-        "the planned path.</p><div class=\"scroll\"><table><thead><tr><th>Robot</th><th>File</th>";
+        "the planned path. A file is beside this page, under its name.</p><div class=\"scroll\"><table><thead><tr>" +
+        heading("Robot", false) + heading("File", false);
     for (const char* text :
          {"Size<br>bytes", "Rounding<br>mm", "Position error<br>mm", "Orientation error<br>°", "Speed error<br>%"}) {
         html += heading(text, true);
     }
-    html += "<th>Read back</th></tr></thead><tbody>";
+    html += heading("Read back", false) + "</tr></thead><tbody>";
     for (std::size_t i = 0; i < report.programs.size(); ++i) {
         const ReportProgram& program = report.programs[i];
-        html += "<tr><td>" + escape_html(program.robot) + "</td><td class=\"code\">programs/" +
-                escape_html(program.robot) + '/' + escape_html(program.file) + "</td>";
+        const std::string file = "programs/" + program.robot + '/' + program.file;
+        html += "<tr><td>" + escape_html(program.robot) + "</td><td class=\"code\"><a href=\"" + address(file) + "\">" +
+                escape_html(file) + "</a></td>";
         for (const ReportRow& row : program.rows) {
             html += cell(program.rows, "programs." + std::to_string(i), row.name);
         }
@@ -233,7 +163,8 @@ std::string settings_table(const Report& report) {
     std::string html = "<h2>Settings</h2><details><summary>" + std::to_string(report.settings.size()) + " options, " +
                        std::to_string(changed) +
                        " not at the default (bold)</summary><div class=\"scroll\"><table><thead><tr>"
-                       "<th>Option</th><th>Value</th><th>Default</th><th>Meaning</th></tr></thead><tbody>";
+                       "<th scope=\"col\">Option</th><th scope=\"col\">Value</th><th scope=\"col\">Default</th>"
+                       "<th scope=\"col\">Meaning</th></tr></thead><tbody>";
     for (const ReportSetting& setting : report.settings) {
         html += std::string("<tr") + (setting.changed ? " class=\"changed\"" : "") + "><td class=\"code\">" +
                 escape_html(setting.name) + "</td><td class=\"code\">" + escape_html(setting.value) +
@@ -245,20 +176,12 @@ std::string settings_table(const Report& report) {
 
 std::string stage_table(const Report& report) {
     std::string html =
-        "<h2>Stages</h2><div class=\"scroll\"><table><thead><tr><th>Stage</th><th>Result</th></tr></thead><tbody>";
+        "<h2>Stages</h2><div class=\"scroll\"><table><thead><tr><th scope=\"col\">Stage</th><th "
+        "scope=\"col\">Result</th></tr></thead><tbody>";
     for (const StageTiming& timing : report.timings) {
         html += "<tr><td>" + escape_html(timing.stage) + "</td><td>" + escape_html(timing.summary) + "</td></tr>";
     }
     return html + "</tbody></table></div>\n";
-}
-
-/// JSON inside a script element: "</script" and "<!--" in a text must not end or open anything.
-std::string data_script(std::string_view id, const std::string& json) {
-    std::string safe;
-    for (const char c : json) {
-        safe += c == '<' ? "\\u003c" : std::string(1, c);
-    }
-    return "<script type=\"application/json\" id=\"" + std::string(id) + "\">" + safe + "</script>\n";
 }
 
 }  // namespace
@@ -266,12 +189,9 @@ std::string data_script(std::string_view id, const std::string& json) {
 std::string report_html(const PartResult& part) {
     const Report report = report_of(part);
     const ViewScene scene = view_scene(part);
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
-        std::string(report.pass ? "PASS" : "FAIL") + " – " + escape_html(report.part) + " – Seampath</title>\n<style>" +
-        std::string(report_style()) + "</style></head>\n<body>\n" + header(report) + "<main>\n" + key_figures(report) +
-        view_section(scene) + seam_table(report);
+    std::string html = page_head(std::string(report.pass ? "PASS" : "FAIL") + " – " + report.part + " – Seampath") +
+                       header(report) + "<main>\n" + identity_section(part, report) + key_figures(report) +
+                       view_section(scene) + seam_table(report);
     if (!report.seams.empty()) {
         html += "<h2>Seam by seam</h2>";
     }
@@ -285,9 +205,11 @@ std::string report_html(const PartResult& part) {
             ". Seams are numbered from 0 as in the files beside "
             "this page; "
             "the unrounded numbers are in report.json.</footer></main>\n";
-    html += data_script("report", report_json(part)) + data_script("scene", view_json(scene));
+    html += data_script("report", report_json(part)) + data_script("scene", view_json(scene)) +
+            data_script("sections", sections_json(seam_sections(part)));
     html += "<script type=\"text/plain\" id=\"three\">" + base64(three_gzip()) + "</script>\n<script>" +
-            std::string(viewer_script()) + "</script>\n</body></html>\n";
+            std::string(page_script()) + "</script>\n<script>" + std::string(viewer_script()) +
+            "</script>\n</body></html>\n";
     return html;
 }
 

@@ -34,12 +34,45 @@ Json stages_json(const std::vector<StageTiming>& timings) {
     return list;
 }
 
+Json characteristics_json(const std::vector<Characteristic>& characteristics) {
+    const auto known = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+    Json list = Json::array();
+    for (const Characteristic& c : characteristics) {
+        const std::string verdict = c.verdict();
+        list.push_back({{"name", c.name},
+                        {"unit", c.unit},
+                        {"nominal", known(c.nominal)},
+                        {"actual", c.actual},
+                        {"uncertainty", known(c.uncertainty)},
+                        {"deviation", known(c.deviation())},
+                        {"tolerance", known(c.tolerance)},
+                        {"out_of_tolerance", known(c.out_of_tolerance)},
+                        {"verdict", verdict.empty() ? Json() : Json(verdict)}});
+    }
+    return list;
+}
+
+/// A worst place is one object: its rows judge nothing.
+Json places_json(const std::vector<ReportRows>& places) {
+    Json list = Json::array();
+    for (const ReportRows& rows : places) {
+        Json place;
+        for (const ReportRow& row : rows) {
+            place[row.name] = std::visit([](const auto& v) { return Json(v); }, row.value);
+        }
+        list.push_back(std::move(place));
+    }
+    return list;
+}
+
 Json seams_json(const std::vector<ReportSeam>& seams) {
     Json list = Json::array();
     for (const ReportSeam& seam : seams) {
         list.push_back({{"seam", list.size()},
                         {"verdict", verdict_json(seam.pass)},
                         {"sentence", seam.sentence},
+                        {"characteristics", characteristics_json(seam.characteristics)},
+                        {"worst_places", places_json(seam.places)},
                         {"rows", rows_json(seam.rows)}});
     }
     return list;
@@ -60,6 +93,7 @@ std::string report_json(const PartResult& part) {
     const Json json{{"part", report.part},
                     {"verdict", verdict_json(report.pass)},
                     {"sentence", report.sentence},
+                    {"identity", rows_json(report.identity)},
                     {"rows", rows_json(report.rows)},
                     {"scan", std::move(scan)},
                     {"seams", seams_json(report.seams)},

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "pipeline/groove_columns.hpp"
+#include "pipeline/report_checks.hpp"
+#include "pipeline/report_inspection.hpp"
 #include "pipeline/report_text.hpp"
+#include "pipeline/report_torch.hpp"
 #include "pipeline/svg.hpp"
 #include "stages/geometry/bspline.hpp"
 
@@ -72,7 +75,17 @@ std::string unchecked_boxes(const PlotAxes& axes, const Deviation& deviation) {
     return svg;
 }
 
-std::string deviation_plot(const Deviation& deviation, double length_mm) {
+/// The worst places, numbered from 1 as in the table of them.
+std::string worst_marks(const PlotAxes& axes, const Deviation& deviation, const SeamModel& model) {
+    std::vector<PlotPoint> places;
+    for (const std::size_t k : worst_samples(deviation, model)) {
+        places.push_back({deviation.samples[k].station_mm, deviation.samples[k].distance_mm});
+    }
+    return svg_numbers(axes, places, "worst");
+}
+
+std::string deviation_plot(const Deviation& deviation, const SeamModel& model) {
+    const double length_mm = std::max(model.length_mm, 1e-3);
     const DeviationLines lines = deviation_lines(deviation);
     const double tolerance = deviation.tolerance_mm;
     const bool in_sight = tolerance > 0 && tolerance < kToleranceInSight * lines.most;
@@ -84,20 +97,19 @@ std::string deviation_plot(const Deviation& deviation, double length_mm) {
     }
     svg += unchecked_boxes(axes, deviation) + svg_band(axes, lines.low, lines.high, "sigma") +
            svg_line(axes, lines.flank1, "flank1") + svg_line(axes, lines.flank2, "flank2") +
-           svg_line(axes, lines.distance, "value");
+           svg_line(axes, lines.distance, "value") + worst_marks(axes, deviation, model);
     if (in_sight) {
         svg += svg_level(axes, tolerance, "tolerance " + decimal(tolerance, 3) + " mm", "limit") +
                svg_level(axes, -tolerance, "", "limit");
     }
     const std::string beyond =
         in_sight ? "" : " The tolerance, " + decimal(tolerance, 3) + " mm, lies outside the plot.";
-    return figure(
-        "wide",
-        "<b>Deviation from the scan</b> <i style=\"background:#16324f\"></i>distance to the line in which the scanned "
-        "flanks meet, with ±1σ <i style=\"background:#c2571a\"></i>to flank 1 "
-        "<i style=\"background:#2c8a8a\"></i>to flank 2 (+ outside the material)" +
-            beyond,
-        svg + svg_end());
+    return figure("wide by-station",
+                  "<b>Deviation from the scan</b> <i class=\"value\"></i>distance to the line in which the scanned "
+                  "flanks meet, with "
+                  "±1σ <i class=\"flank1\"></i>to flank 1 <i class=\"flank2\"></i>to flank 2 (+ outside the material)" +
+                      beyond,
+                  svg + svg_end());
 }
 
 std::string histogram(const Deviation& deviation) {
@@ -154,7 +166,8 @@ std::string curvature_plot(const SeamModel& model, const std::vector<Eigen::Vect
     }
     const PlotAxes axes{kNarrowPlot,   kNarrowHeight,    0, arc.length(), 0, padded(most, kLeastCurvature),
                         "station, mm", "curvature, 1/mm"};
-    return figure("", nodes.empty() ? "<b>Curvature</b>" : "<b>Curvature</b> and the nodes that carry the shape",
+    return figure("by-station",
+                  nodes.empty() ? "<b>Curvature</b>" : "<b>Curvature</b> and the nodes that carry the shape",
                   svg_axes(axes, nodes.empty() ? "Curvature of the seam" : "Curvature of the seam with its nodes") +
                       svg_line(axes, line, "value") + svg_dots(axes, dots, 3, "node") + svg_end());
 }
@@ -183,7 +196,7 @@ std::string groove_plot(const Seam& seam, const GrooveColumn& column) {
     const std::string label(column.label), unit(column.shown_unit);
     const PlotAxes axes{kNarrowPlot,   kNarrowHeight,      0, std::max(station, 1e-3), middle - half, middle + half,
                         "station, mm", label + ", " + unit};
-    return figure("", "<b>" + label + "</b>, with ±1σ",
+    return figure("by-station", "<b>" + label + "</b>, with ±1σ",
                   svg_axes(axes, label + " along the seam") + svg_band(axes, low, high, "sigma") +
                       svg_line(axes, line, "value") + svg_end());
 }
@@ -234,7 +247,7 @@ std::string speed_plot(const PartResult& part, std::size_t seam) {
     }
     const PlotAxes axes{kNarrowPlot,   kNarrowHeight, 0, part.models[seam].length_mm, 0, padded(most, 1e-3),
                         "station, mm", "speed, mm/s"};
-    return figure("", "<b>Torch speed</b> of the straight moves, " + decimal(wanted, 1) + " mm/s asked for",
+    return figure("by-station", "<b>Torch speed</b> of the straight moves, " + decimal(wanted, 1) + " mm/s asked for",
                   svg_axes(axes, "Torch speed along the seam") + svg_level(axes, wanted, "", "quantile") +
                       svg_line(axes, speeds, "value") + svg_end());
 }
@@ -244,12 +257,14 @@ std::string speed_plot(const PartResult& part, std::size_t seam) {
 std::string seam_plots(const PartResult& part, std::size_t seam) {
     const SeamModel& model = part.models[seam];
     if (part.nominal) {
-        return "<div class=\"plots\">\n" + curvature_plot(model, {}) + speed_plot(part, seam) + "</div>\n";
+        return "<div class=\"plots\">\n" + curvature_plot(model, {}) + speed_plot(part, seam) +
+               torch_angle_plot(part, seam) + "</div>\n";
     }
-    return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], std::max(model.length_mm, 1e-3)) +
+    return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], model) + section_panel(seam) +
            histogram(part.deviations[seam]) +
            curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) +
-           speed_plot(part, seam) + groove_plots(part.extraction.seams[seam]) + "</div>\n";
+           speed_plot(part, seam) + torch_angle_plot(part, seam) + groove_plots(part.extraction.seams[seam]) +
+           "</div>\n";
 }
 
 }  // namespace seampath

@@ -6,11 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/digest.hpp"
 #include "pipeline/fields.hpp"
 #include "pipeline/report_arm.hpp"
 #include "pipeline/report_seams.hpp"
 #include "pipeline/report_text.hpp"
 #include "stages/error.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -32,6 +34,19 @@ ReportProgram program_report(const ProgramFile& file) {
                 number("max_orientation_error_deg", "Orientation, read back", file.max_orientation_error_deg, "°", 6),
                 number("max_speed_error_percent", "Speed, read back", 100 * file.max_speed_error, "%", 4),
             }};
+}
+
+/// What was looked at, by which settings, with which program: enough to get the same numbers again.
+ReportRows identity_rows(const PartResult& part) {
+    ReportRows rows;
+    if (!part.origin.file.empty()) {
+        rows.push_back(fact("scan_file", "Scan", part.origin.file));
+        rows.push_back(fact("scan_sha256", "SHA-256 of the scan", part.origin.sha256));
+    }
+    rows.push_back(fact("config_sha256", "SHA-256 of the settings", sha256(config_json(part.config))));
+    rows.push_back(fact("program", "Program", "seampath " SEAMPATH_VERSION));
+    rows.push_back(fact("build_sha256", "SHA-256 of the program", build_id()));
+    return rows;
 }
 
 ReportRows scan_rows(const PartResult& part) {
@@ -154,7 +169,13 @@ std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
     if (part.models.empty()) {
         return "No seam was found in this scan";
     }
-    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces" + arm;
+    std::size_t worst = 0;
+    for (std::size_t i = 1; i < part.models.size(); ++i) {
+        worst = tolerance_used(part.deviations[i]) > tolerance_used(part.deviations[worst]) ? i : worst;
+    }
+    return std::to_string(in_tolerance) + " of " + found +
+           " within tolerance of the scanned surfaces; the worst, seam " + std::to_string(worst) + ", uses " +
+           fixed(100 * tolerance_used(part.deviations[worst]), 0) + " % of its tolerance" + arm;
 }
 
 }  // namespace
@@ -166,6 +187,7 @@ Report report_of(const PartResult& part) {
     Report report;
     report.part = valid_utf8(part.scan.name);
     report.pass = part.pass();
+    report.identity = identity_rows(part);
     report.rows = part.nominal ? nominal_rows(part) : found_rows(part);
     const ReportRows path = path_rows(part);
     report.rows.insert(report.rows.end(), path.begin(), path.end());

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "pipeline/report_checks.hpp"
 #include "pipeline/result.hpp"
 
 /// What a report says, before it is written as JSON or HTML: both take their numbers from here.
@@ -27,6 +28,8 @@ struct ReportSeam {
     bool pass = false;
     std::string sentence;  ///< the verdict with the numbers behind it
     ReportRows rows;
+    std::vector<Characteristic> characteristics;  ///< empty for a nominal part, as are the places
+    std::vector<ReportRows> places;               ///< where it is farthest from the scan, worst first
 };
 
 struct ReportProgram {
@@ -48,6 +51,7 @@ struct Report {
     std::string part;
     bool pass = false;
     std::string sentence;
+    ReportRows identity;  ///< of scan, options and program
     ReportRows rows;
     ReportRows scan;  ///< empty for a nominal part
     std::vector<std::string> remarks;

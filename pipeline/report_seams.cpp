@@ -97,6 +97,19 @@ ReportRows groove_rows(const Seam& seam) {
     return rows;
 }
 
+ReportRows place_rows(const DeviationSample& sample) {
+    return {
+        number("station_mm", "Station", sample.station_mm, "mm", 1),
+        number("deviation_mm", "Deviation", sample.distance_mm, "mm"),
+        number("sigma_mm", "1σ", sample.sigma_mm, "mm"),
+        number("flank1_mm", "From flank 1", sample.flank1_mm, "mm"),
+        number("flank2_mm", "From flank 2", sample.flank2_mm, "mm"),
+        number("x_mm", "x", sample.p.x(), "mm", 2),
+        number("y_mm", "y", sample.p.y(), "mm", 2),
+        number("z_mm", "z", sample.p.z(), "mm", 2),
+    };
+}
+
 }  // namespace
 
 double modelled_length(const Seam& seam) {
@@ -123,7 +136,9 @@ ReportSeam nominal_report(const PartResult& part, std::size_t i) {
                 number("curve_error_max_mm", "Curve from the exact seam, largest", model.residual_max_mm, "mm", 9),
                 curvature_row(model),
                 planned_row(part, i),
-            }};
+            },
+            {},
+            {}};
 }
 
 ReportSeam seam_report(const PartResult& part, std::size_t i) {
@@ -160,7 +175,12 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
             number("tolerance_mm", "Tolerance", deviation.tolerance_mm, "mm"),
             judged(fact("in_tolerance", "In tolerance", deviation.pass ? "yes" : "no"), deviation.pass),
             planned_row(part, i),
-        }};
+        },
+        characteristics(part, i),
+        {}};
+    for (const std::size_t k : worst_samples(deviation, model)) {
+        report.places.push_back(place_rows(deviation.samples[k]));
+    }
     const ReportRows model_facts = model_rows(model);
     const auto before = std::find_if(report.rows.begin(), report.rows.end(),
                                      [](const ReportRow& row) { return row.name == "residual_rms_mm"; });

@@ -13,6 +13,9 @@ namespace {
 /// More samples a seam than this add nothing to the picture.
 constexpr std::size_t kMaxSamples = 4000;
 
+/// All seams together: some 600 kB of the page.
+constexpr std::size_t kMaxSamplesOfAll = 9000;
+
 /// Torch poses are shown this far apart, as a share of the scene's radius.
 constexpr double kTorchSpacing = 0.07;
 
@@ -89,12 +92,14 @@ ViewSeam view_seam(const PartResult& part, std::size_t i, const ViewScene& scene
     const Seam& seam = part.extraction.seams[i];
     const Deviation& deviation = part.deviations[i];
     ViewSeam view;
-    const std::size_t step = deviation.samples.size() / kMaxSamples + 1;
+    const std::size_t step =
+        deviation.samples.size() / std::min(kMaxSamples, kMaxSamplesOfAll / part.models.size() + 1) + 1;
     for (std::size_t k = 0; k < deviation.samples.size(); ++k) {
         if (k % step == 0 || k + 1 == deviation.samples.size()) {
             const DeviationSample& s = deviation.samples[k];
             const bool modelled = flanks_at(part.models[i], s.station_mm).modelled;
-            view.samples.push_back({s.p - scene.centre, s.station_mm, s.distance_mm, s.sigma_mm, s.covered, modelled});
+            view.samples.push_back({s.p - scene.centre, s.station_mm, s.distance_mm, s.sigma_mm, s.covered, modelled,
+                                    s.flank1_mm, s.flank2_mm});
         }
     }
     if (part.models[i].closed && !view.samples.empty()) {

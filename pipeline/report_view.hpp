@@ -30,6 +30,8 @@ struct ViewSample {
     double sigma_mm = 0;
     bool covered = false;
     bool modelled = false;
+    double flank1_mm = 0;  ///< signed distances to the flanks, as in DeviationSample
+    double flank2_mm = 0;
 };
 
 struct ViewSeam {
@@ -62,12 +64,18 @@ ViewScene view_scene(const PartResult& part);
 /// then for what is out of tolerance, and for what was not checked against the scan.
 inline constexpr std::array<const char*, 9> kDeviationColours{"#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c",
                                                               "#28ae80", "#5ec962", "#addc30", "#fde725"};
+/// Colours of signed distances from -scale_mm to scale_mm in equal steps: blue, white, orange, which the colour-blind
+/// tell apart, the ends being of one darkness.
+inline constexpr std::array<const char*, 5> kSignedColours{"#1f5fbf", "#8fb4e3", "#f7f7f7", "#f0a860", "#c2570c"};
 inline constexpr const char* kOutOfToleranceColour = "#e3122f";
 inline constexpr const char* kUncheckedColour = "#7d8794";
 
 /// The scene as JSON for viewer.js: coordinates relative to the centre in mm; cloud positions as base64 of
 /// little-endian 16-bit steps between two corners, normals as base64 of signed bytes.
 std::string view_json(const ViewScene& scene);
+
+/// The 3D view of the page with its legend, layers and still picture.
+std::string view_section(const ViewScene& scene);
 
 /// A still picture of the scene (parallel projection) for pages without WebGL or scripts.
 std::string view_svg(const ViewScene& scene);

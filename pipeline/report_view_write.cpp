@@ -61,7 +61,8 @@ Json seam_json(const ViewSeam& seam) {
     Json samples = Json::array(), nodes = Json::array();
     for (const ViewSample& s : seam.samples) {
         samples.push_back({trimmed(s.p.x()), trimmed(s.p.y()), trimmed(s.p.z()), trimmed(s.station_mm),
-                           s.covered ? Json(trimmed(s.distance_mm)) : Json(), trimmed(s.sigma_mm), s.modelled ? 1 : 0});
+                           s.covered ? Json(trimmed(s.distance_mm)) : Json(), trimmed(s.sigma_mm), s.modelled ? 1 : 0,
+                           trimmed(s.flank1_mm), trimmed(s.flank2_mm)});
     }
     for (const Eigen::Vector3d& node : seam.nodes) {
         nodes.push_back(trimmed_json(node));
@@ -147,7 +148,8 @@ std::string still_seam(const ViewScene& scene, const ViewSeam& seam, const Proje
 }  // namespace
 
 std::string view_json(const ViewScene& scene) {
-    Json clouds = Json::array(), seams = Json::array(), torch = Json::array(), colours = Json::array();
+    Json clouds = Json::array(), seams = Json::array(), torch = Json::array(), colours = Json::array(),
+         signed_colours = Json::array();
     for (const ViewCloud& cloud : scene.clouds) {
         clouds.push_back(cloud_json(cloud));
     }
@@ -160,10 +162,14 @@ std::string view_json(const ViewScene& scene) {
     for (const char* stop : kDeviationColours) {
         colours.push_back(stop);
     }
+    for (const char* stop : kSignedColours) {
+        signed_colours.push_back(stop);
+    }
     const Json json{{"radius", scene.radius_mm},
                     {"camera", camera_json(scene.camera)},
                     {"scale", scene.scale_mm},
                     {"colours", std::move(colours)},
+                    {"signedColours", std::move(signed_colours)},
                     {"outOfTolerance", kOutOfToleranceColour},
                     {"unchecked", kUncheckedColour},
                     {"clouds", std::move(clouds)},

@@ -18,6 +18,13 @@ struct StageTiming {
     std::string summary;   ///< what went in, what came out, the quality number
 };
 
+/// The file that a scan was read from; all empty for a nominal part and for a scan that was made in memory.
+struct ScanOrigin {
+    std::string file;     ///< its name, without folders
+    std::string sha256;   ///< as scan_sha256() gives it
+    std::string written;  ///< when it was last written, "2026-03-31 14:05 UTC"
+};
+
 /// Everything that is known of one part after a run. `nodes`, `models` and `deviations` run parallel to
 /// `extraction.seams`; `plan` and `programs` hold only the seams that may be welded. A nominal part has a name and
 /// models, plan and programs; of a scan and of what stages make of one it has nothing.
@@ -25,6 +32,7 @@ struct PartResult {
     Config config;
     bool nominal = false;  ///< the seams follow from dimensions, not from a scan
     Scan scan;
+    ScanOrigin origin;
     Extraction extraction;
     std::vector<Nodes> nodes;
     std::vector<SeamModel> models;

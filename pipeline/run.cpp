@@ -4,6 +4,7 @@
 
 #include "pipeline/arms.hpp"
 #include "pipeline/digest.hpp"
+#include "pipeline/files.hpp"
 #include "pipeline/pose_option.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/scan_input.hpp"
@@ -170,7 +171,8 @@ PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config
             part.scan = std::move(input.scan);
         },
         read_summary);
-    const std::string file_sha256 = scan_sha256(scan_file);
+    part.origin = {scan_file.filename().string(), scan_sha256(scan_file), time_written(scan_file)};
+    const std::string& file_sha256 = part.origin.sha256;
     walk.depend_on("read", part.scan.name + "\n" + file_sha256);
 
     remove_products(folder);

@@ -33,6 +33,15 @@ Value load(const fs::path& file, std::string_view stage) {
                      " as this build writes it; run the scan again");
 }
 
+/// The file of that name, which a run over a scan leaves.
+fs::path fitted(const fs::path& folder, const std::string& name) {
+    if (!fs::is_regular_file(folder / name)) {
+        throw InputError("run folder: " + folder.string() + " has no " + name +
+                         "; a folder in which \"seampath run\" fitted the seams of a scan was needed");
+    }
+    return folder / name;
+}
+
 }  // namespace
 
 StoredRun load_run(const fs::path& folder, const std::optional<fs::path>& scan_file) {
@@ -59,13 +68,11 @@ StoredRun load_run(const fs::path& folder, const std::optional<fs::path>& scan_f
 }
 
 std::vector<SeamModel> load_models(const fs::path& folder) {
-    const fs::path file = folder / "4-models.json";
-    if (!fs::is_regular_file(file)) {
-        throw InputError(
-            "run folder: " + folder.string() +
-            " has no 4-models.json; a folder in which \"seampath run\" fitted the seams of a scan was needed");
-    }
-    return load<std::vector<SeamModel>>(file, "fit");
+    return load<std::vector<SeamModel>>(fitted(folder, "4-models.json"), "fit");
+}
+
+std::vector<Deviation> load_deviations(const fs::path& folder) {
+    return load<std::vector<Deviation>>(fitted(folder, "5-deviation.json"), "validate");
 }
 
 }  // namespace seampath

@@ -24,4 +24,7 @@ StoredRun load_run(const std::filesystem::path& folder, const std::optional<std:
 /// so far, or the file is damaged.
 std::vector<SeamModel> load_models(const std::filesystem::path& folder);
 
+/// How far those curves were from the scan, one a seam. Throws as load_models does.
+std::vector<Deviation> load_deviations(const std::filesystem::path& folder);
+
 }  // namespace seampath

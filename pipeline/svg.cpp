@@ -5,12 +5,13 @@
 
 #include "pipeline/report_text.hpp"
 #include "stages/error.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
 
 // Room for tick labels and axis labels around the plot, CSS pixels.
-constexpr double kLeft = 58, kRight = 14, kTop = 10, kBottom = 40;
+constexpr double kLeft = 66, kRight = 14, kTop = 10, kBottom = 40;
 
 // A line keeps at most two points (lowest and highest) for each of so many columns.
 constexpr std::size_t kMostColumns = 700;
@@ -94,8 +95,10 @@ std::vector<double> nice_ticks(double low, double high, int count) {
 std::string svg_axes(const PlotAxes& axes, std::string_view title) {
     const double right = axes.width - kRight, bottom = axes.height - kBottom;
     std::string svg = "<svg" + attribute("class", "plot") + attribute("role", "img") +
-                      attribute("viewBox", "0 0 " + px(axes.width) + ' ' + px(axes.height)) + "><title>" +
-                      escape_html(title) + "</title>";
+                      attribute("viewBox", "0 0 " + px(axes.width) + ' ' + px(axes.height)) +
+                      attribute("data-plot", px(kLeft) + ' ' + px(right) + ' ' + shortest(axes.x_low) + ' ' +
+                                                 shortest(axes.x_high) + ' ' + px(kTop) + ' ' + px(bottom)) +
+                      "><title>" + escape_html(title) + "</title>";
     const auto x_ticks = nice_ticks(axes.x_low, axes.x_high, std::max(2, static_cast<int>(axes.width / 90)));
     const auto y_ticks = nice_ticks(axes.y_low, axes.y_high, std::max(2, static_cast<int>(axes.height / 45)));
     for (const double x : x_ticks) {
@@ -108,7 +111,7 @@ std::string svg_axes(const PlotAxes& axes, std::string_view title) {
     }
     svg += line_element(kLeft, bottom, right, bottom, "axis") + line_element(kLeft, kTop, kLeft, bottom, "axis");
     svg += text_element((kLeft + right) / 2, axes.height - 6, "label middle", axes.x_label);
-    svg += "<text class=\"label middle\" transform=\"translate(13 " + px((kTop + bottom) / 2) + ") rotate(-90)\">" +
+    svg += "<text class=\"label middle\" transform=\"translate(11 " + px((kTop + bottom) / 2) + ") rotate(-90)\">" +
            escape_html(axes.y_label) + "</text>";
     return svg;
 }
@@ -176,6 +179,18 @@ std::string svg_dots(const PlotAxes& axes, std::span<const PlotPoint> points, do
     for (const PlotPoint& p : points) {
         svg += "<circle" + attribute("cx", px(pixel_x(axes, p.x))) + attribute("cy", px(pixel_y(axes, p.y))) +
                attribute("r", px(radius_px)) + "/>";
+    }
+    return svg + "</g>";
+}
+
+std::string svg_numbers(const PlotAxes& axes, std::span<const PlotPoint> points, std::string_view style) {
+    constexpr double kRing = 7.5, kAbove = 11;  // CSS pixels
+    std::string svg = "<g" + attribute("class", style) + '>';
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const double x = pixel_x(axes, points[k].x);
+        const double y = std::max(kTop + kRing, pixel_y(axes, points[k].y) - kAbove);
+        svg += "<circle" + attribute("cx", px(x)) + attribute("cy", px(y)) + attribute("r", px(kRing)) + "/>" +
+               text_element(x, y + 3.8, "middle", std::to_string(k + 1));
     }
     return svg + "</g>";
 }

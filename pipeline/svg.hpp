@@ -30,7 +30,8 @@ struct PlotAxes {
 /// Multiples of 1, 2 or 5 times a power of ten within [low, high], about `count` of them.
 std::vector<double> nice_ticks(double low, double high, int count);
 
-/// Opens the SVG and draws frame, grid, ticks and labels. `title` is for readers who can't see the plot.
+/// Opens the SVG and draws frame, grid, ticks and labels. `title` is for readers who can't see the plot; data-plot says
+/// where the axes are, for scripts: left, right, x_low, x_high, top, bottom.
 std::string svg_axes(const PlotAxes& axes, std::string_view title);
 std::string svg_end();
 
@@ -49,6 +50,9 @@ std::string svg_box(const PlotAxes& axes, PlotPoint low, PlotPoint high, std::st
 
 /// A dot at each point.
 std::string svg_dots(const PlotAxes& axes, std::span<const PlotPoint> points, double radius_px, std::string_view style);
+
+/// A ringed number at each point: 1, 2, ...
+std::string svg_numbers(const PlotAxes& axes, std::span<const PlotPoint> points, std::string_view style);
 
 /// A line across the whole plot at y, or at x, with a short text at its end; `line` is the line of text it stands in,
 /// so that the texts of neighbouring marks don't cover each other.

@@ -17,7 +17,8 @@
 
   // ------------------------------------------------------------------------------------------------ what is drawn
   const FIELD_OF_VIEW = 32;                        // degrees, vertical
-  const BACKGROUND = '#f3f5f7';
+  const PAPER = '#f3f5f7';                         // what is printed is light whatever the screen's theme is
+  const background = () => getComputedStyle(host).backgroundColor;
   const hidden = new Set((/hide=([a-z,]*)/.exec(location.hash) || ['', ''])[1].split(','));
   const uniforms = { pixel: { value: 1 } };        // height of a screen pixel at unit distance from the camera
 
@@ -136,24 +137,32 @@
   }
 
   const vector = (a) => new THREE.Vector3(a[0], a[1], a[2]);
-  function deviationColour(seam, sample) {
+  // Colour at a share of a map whose colours are in equal steps.
+  function mapColour(colours, share) {
+    const place = Math.min(1, Math.max(0, share)) * (colours.length - 1);
+    const k = Math.min(colours.length - 2, Math.floor(place));
+    return new THREE.Color(colours[k]).lerp(new THREE.Color(colours[k + 1]), place - k);
+  }
+  // `colours` is "distance", "flank1" or "flank2".
+  function deviationColour(seam, sample, colours) {
     const [distance, modelled] = [sample[4], sample[6]];
     if (distance === null || modelled) return new THREE.Color(scene.unchecked);
-    if (distance > seam.tolerance) return new THREE.Color(scene.outOfTolerance);
-    const place = Math.min(1, scene.scale > 0 ? distance / scene.scale : 0) * (scene.colours.length - 1);
-    const k = Math.min(scene.colours.length - 2, Math.floor(place));
-    return new THREE.Color(scene.colours[k]).lerp(new THREE.Color(scene.colours[k + 1]), place - k);
+    const scale = Math.max(scene.scale, 1e-9);
+    if (colours !== 'distance') {
+      return mapColour(scene.signedColours, 0.5 + 0.5 * sample[colours === 'flank1' ? 7 : 8] / scale);
+    }
+    return distance > seam.tolerance ? new THREE.Color(scene.outOfTolerance) : mapColour(scene.colours, distance / scale);
   }
 
-  function seamRings(seam) {
+  function seamRings(seam, colours) {
     const dashLength = scene.radius / 40;
     const last = seam.samples.length - 1;
     return seam.samples.map((sample, i) => {
       const along = vector(seam.samples[Math.min(i + 1, last)]).sub(vector(seam.samples[Math.max(i - 1, 0)]));
       const unchecked = sample[4] === null || sample[6];
       const beyond = !unchecked && sample[4] > seam.tolerance;
-      return { p: vector(sample), along: along.normalize(), colour: deviationColour(seam, sample), start: i === 0,
-        width: beyond ? 4.6 : 3.2, dash: unchecked ? sample[3] / dashLength : -1 };
+      return { p: vector(sample), along: along.normalize(), colour: deviationColour(seam, sample, colours),
+        start: i === 0, width: beyond ? 4.6 : 3.2, dash: unchecked ? sample[3] / dashLength : -1 };
     });
   }
 
@@ -167,8 +176,8 @@
     });
   }
 
-  function nodeSpheres() {
-    const positions = scene.seams.flatMap((seam) => seam.nodes.flat());
+  // White balls with a dark rim, `size` CSS pixels wide.
+  function balls(positions, size) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(positions), 3));
     return new THREE.Points(geometry, new THREE.ShaderMaterial({
@@ -176,7 +185,7 @@
         void main() {
           vec4 eye = modelViewMatrix * vec4(position, 1.0);
           eye.xyz *= 0.984;
-          gl_PointSize = ${(11 * devicePixelRatio).toFixed(1)};
+          gl_PointSize = ${(size * devicePixelRatio).toFixed(1)};
           gl_Position = projectionMatrix * eye;
         }`,
       fragmentShader: `
@@ -299,24 +308,49 @@
   function readOut(canvas, camera) {
     const tip = document.getElementById('tip');
     const samples = scene.seams.flatMap((seam, k) => seam.samples.map((sample) => ({ k, sample, p: vector(sample) })));
-    canvas.addEventListener('pointermove', (event) => {
+    const nearest = (event) => {
       const box = canvas.getBoundingClientRect();
       const x = event.clientX - box.left, y = event.clientY - box.top;
       let best = null, least = 12;
-      for (const candidate of event.buttons ? [] : samples) {
+      for (const candidate of samples) {
         const p = candidate.p.clone().project(camera.lens);
         const gap = Math.hypot((p.x + 1) / 2 * box.width - x, (1 - p.y) / 2 * box.height - y);
-        if (gap < least) { least = gap; best = candidate; }
+        if (gap < least) { least = gap; best = { ...candidate, x, y }; }
       }
+      return best;
+    };
+    canvas.addEventListener('pointermove', (event) => {
+      const best = event.buttons ? null : nearest(event);
       tip.hidden = best === null;
       if (best === null) return;
       const [station, distance, sigma, modelled] = best.sample.slice(3);
       tip.textContent = `Seam ${best.k} · station ${station.toFixed(1)} mm · ` + (distance === null ? 'not checked' :
         `deviation ${distance.toFixed(3)} ± ${sigma.toFixed(3)} mm`) + (modelled ? ' · bridged' : '');
-      tip.style.left = Math.min(x + 14, box.width - 300) + 'px';
-      tip.style.top = (y + 16) + 'px';
+      tip.style.left = Math.min(best.x + 14, canvas.clientWidth - 300) + 'px';
+      tip.style.top = (best.y + 16) + 'px';
     });
     canvas.addEventListener('pointerleave', () => { tip.hidden = true; });
+    // A click that turned nothing asks for the section there.
+    let pressed = null;
+    canvas.addEventListener('pointerdown', (event) => { pressed = [event.clientX, event.clientY]; });
+    canvas.addEventListener('pointerup', (event) => {
+      const hit = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4 ? nearest(event) : null;
+      if (hit) document.dispatchEvent(new CustomEvent('seampath-pick', { detail: { seam: hit.k, station: hit.sample[3] } }));
+    });
+  }
+
+  // Arrow keys turn, + and - zoom, 0 shows all.
+  function keys(canvas, camera, redraw, all) {
+    const acts = { ArrowLeft: () => camera.orbit(-30, 0), ArrowRight: () => camera.orbit(30, 0),
+      ArrowUp: () => camera.orbit(0, -30), ArrowDown: () => camera.orbit(0, 30),
+      '+': () => camera.zoom(1 / 1.2), '-': () => camera.zoom(1.2), 0: all };
+    canvas.addEventListener('keydown', (event) => {
+      const act = acts[event.key];
+      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      act();
+      redraw();
+    });
   }
 
   // A bar of 1, 2 or 5 times a power of ten millimetres at the distance of the target.
@@ -348,7 +382,7 @@
     const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
     const pixels = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    const ground = new THREE.Color(BACKGROUND).toArray().map((c) => Math.round(255 * c));
+    const ground = new THREE.Color(background()).toArray().map((c) => Math.round(255 * c));
     let drawn = 0;
     for (let i = 0; i < pixels.length; i += 4) {
       drawn += ground.some((c, k) => Math.abs(pixels[i + k] - c) > 4) ? 1 : 0;
@@ -359,17 +393,34 @@
   function start() {
     const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     renderer.setPixelRatio(devicePixelRatio);
-    renderer.setClearColor(BACKGROUND);
+    renderer.setClearColor(background());
     const canvas = renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', '3D view of the scan with its seams, coloured by their deviation from it; all ' +
+      'numbers are in the tables below. Arrow keys turn it, plus and minus zoom, 0 shows all.');
     const world = new THREE.Scene();
     const layers = {
       scan: scene.clouds.filter((cloud) => cloud.count > 0).map(pointCloud),
-      seam: [tubes(scene.seams.flatMap(seamRings), true)],
-      nodes: [nodeSpheres()],
+      seam: [new THREE.Group()],
+      nodes: [balls(scene.seams.flatMap((seam) => seam.nodes.flat()), 11)],
       torch: [tubes(torchRings(0.16 * scene.radius), false)]
     };
+    const unculled = (object) => object.traverse((part) => { part.frustumCulled = false; });
+    const place = new THREE.Group();                // the station whose section is shown
+    layers.seam[0].add(place);
+    function paint(colours) {
+      layers.seam[0].children.slice().forEach((child) => { if (child !== place) layers.seam[0].remove(child); });
+      layers.seam[0].add(tubes(scene.seams.flatMap((seam) => seamRings(seam, colours)), true));
+      unculled(layers.seam[0]);
+      for (const legend of document.querySelectorAll('[data-colours]')) {
+        legend.hidden = legend.dataset.colours !== (colours === 'distance' ? 'distance' : 'signed');
+      }
+    }
+    const chosen = document.getElementById('colours');
+    paint(chosen ? chosen.value : 'distance');
     const objects = Object.values(layers).flat();
-    objects.forEach((object) => object.traverse((part) => { part.frustumCulled = false; }));
+    objects.forEach(unculled);
     world.add(...objects);
 
     let waiting = false;
@@ -393,9 +444,23 @@
     for (const box of document.querySelectorAll('[data-layer]')) {
       const show = () => layers[box.dataset.layer].forEach((object) => { object.visible = box.checked; });
       box.checked = !hidden.has(box.dataset.layer) && box.checked;
-      box.addEventListener('change', () => { show(); redraw(); });
+      box.addEventListener('change', () => { show(); draw(); measure(renderer); });
       show();
     }
+    chosen?.addEventListener('change', () => { paint(chosen.value); draw(); measure(renderer); });
+    document.addEventListener('seampath-station', (event) => {
+      const { seam, station } = event.detail;
+      const gaps = scene.seams[seam].samples.map((sample) => Math.abs(sample[3] - station));
+      const ball = balls(scene.seams[seam].samples[gaps.indexOf(Math.min(...gaps))].slice(0, 3), 19);
+      place.children.slice().forEach((child) => place.remove(child));
+      place.add(ball);
+      unculled(place);
+      redraw();
+    });
+    const ground = (colour) => { renderer.setClearColor(colour); draw(); };
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => ground(background()));
+    addEventListener('beforeprint', () => ground(PAPER));
+    addEventListener('afterprint', () => ground(background()));
     const points = (seams) => seams.flatMap((seam) => seam.samples.map(vector));
     const aspect = () => host.clientWidth / host.clientHeight;
     const everything = () => {
@@ -415,12 +480,14 @@
     host.append(canvas);
     host.classList.add('live');
     steer(canvas, camera, redraw);
+    keys(canvas, camera, redraw, () => camera.jump(everything()));
     readOut(canvas, camera);
     addEventListener('resize', resize);
     renderer.setSize(host.clientWidth, host.clientHeight);
     camera.jump(everything());
     draw();
     measure(renderer);
+    report('milliseconds', Math.round(performance.now()));
   }
 
   loadThree().then(start).catch((error) => {

@@ -26,6 +26,8 @@ Command interpolate_command(CLI::App& program);
 Command parametrize_command(CLI::App& program);
 Command saddle_command(CLI::App& program);
 Command mechanism_command(CLI::App& program);
+Command compare_command(CLI::App& program);
+Command report_command(CLI::App& program);
 Command calibrate_command(CLI::App& program);
 
 }  // namespace seampath

@@ -82,11 +82,11 @@ int run_program(int argc, char** argv) {
     program.set_version_flag("--version", "seampath " SEAMPATH_VERSION);
     program.require_subcommand(1);
     program.footer(kExamples);
-    const std::vector<Command> commands{run_command(program),         check_command(program),
-                                        info_command(program),        options_command(program),
-                                        dataset_command(program),     interpolate_command(program),
-                                        parametrize_command(program), saddle_command(program),
-                                        mechanism_command(program),   calibrate_command(program)};
+    const std::vector<Command> commands{
+        run_command(program),         check_command(program),   info_command(program),
+        options_command(program),     dataset_command(program), interpolate_command(program),
+        parametrize_command(program), saddle_command(program),  mechanism_command(program),
+        calibrate_command(program),   compare_command(program), report_command(program)};
     try {
         check_command_names(program, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
         program.parse(argc, argv);

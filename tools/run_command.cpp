@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/files.hpp"
+#include "pipeline/parts_page.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/summary.hpp"
 #include "pipeline/text.hpp"
@@ -41,7 +42,7 @@ struct Part {
     std::string name;
     fs::path folder;
     int status = kOwnFault;
-    std::size_t seams = 0;
+    PartRow row{};
 };
 
 std::vector<Override> overrides(const RunArguments& given) {
@@ -114,7 +115,7 @@ void print_result(const Part& part, const PartResult& result) {
 int run_one(Part& part, const RunArguments& given, const Config& config) {
     ProgressLine line(given.scans.size() == 1 ? "" : part.name + ": ");
     const PartResult result = run_part(part.scan, part.folder, config, resume(given), line.progress());
-    part.seams = result.models.size();
+    part.row = part_row(result);
     if (!given.json) {
         print_result(part, result);
     }
@@ -128,8 +129,10 @@ std::string_view word(int status) {
 std::string summary_json(const std::vector<Part>& all, bool with_reports) {
     Json list = Json::array();
     for (const auto& part : all) {
-        list.push_back(
-            {{"name", part.name}, {"result", word(part.status)}, {"exit_status", part.status}, {"seams", part.seams}});
+        list.push_back({{"name", part.name},
+                        {"result", word(part.status)},
+                        {"exit_status", part.status},
+                        {"seams", part.row.seams}});
         if (with_reports && part.status <= kOutOfTolerance) {
             list.back()["report"] = Json::parse(read_file(part.folder / "report.json", kMaxReportBytes, "run"));
         }
@@ -137,17 +140,33 @@ std::string summary_json(const std::vector<Part>& all, bool with_reports) {
     return Json{{"parts", std::move(list)}}.dump(4, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void print_summary(const std::vector<Part>& all) {
+std::string summary_page(const std::vector<Part>& all) {
+    std::vector<PartRow> rows;
+    for (const auto& part : all) {
+        rows.push_back(part.row);
+        rows.back().name = rows.back().folder = part.name;
+        rows.back().result = word(part.status);
+        if (!part.row.has_report) {
+            rows.back().sentence =
+                "no report: the run ended with exit status " + std::to_string(part.status) + " and a message on stderr";
+        }
+    }
+    return parts_page(std::move(rows));
+}
+
+void print_summary(const std::vector<Part>& all, const fs::path& page) {
     std::vector<std::vector<std::string>> rows{{"part", "seams", "result"}};
     for (const auto& part : all) {
-        rows.push_back({part.name, std::to_string(part.seams), std::string(word(part.status))});
+        rows.push_back({part.name, std::to_string(part.row.seams), std::string(word(part.status))});
     }
-    std::cout << "\n" << aligned(rows);
+    std::cout << "\n" << aligned(rows) << "summary   " << page.string() << "\n";
 }
 
 int run_several(std::vector<Part>& all, const RunArguments& given, const Config& config) {
     const RunFolder folder(given.out);
-    folder.remove("summary.json");  // of an earlier run
+    for (const auto* file : {"summary.json", "summary.html"}) {
+        folder.remove(file);  // of an earlier run
+    }
     int worst = kPass;
     for (auto& part : all) {
         part.status = guarded([&] { return run_one(part, given, config); }, part.name + ": ");
@@ -157,10 +176,11 @@ int run_several(std::vector<Part>& all, const RunArguments& given, const Config&
         }
     }
     folder.write("summary.json", summary_json(all, false));
+    folder.write("summary.html", summary_page(all));
     if (given.json) {
         std::cout << summary_json(all, true);
     } else {
-        print_summary(all);
+        print_summary(all, folder.path() / "summary.html");
     }
     return worst;
 }

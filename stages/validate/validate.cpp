@@ -115,12 +115,11 @@ std::optional<double> wall_height(const Ground& ground, const SeamModel& model, 
 }
 
 void summarise(Deviation& result, const ValidateOptions& options) {
-    std::vector<double> distance, sigma;
+    std::vector<double> distance;
     double sum = 0, signed_sum = 0;
     for (const DeviationSample& s : result.samples) {
         if (s.covered) {
             distance.push_back(s.distance_mm);
-            sigma.push_back(s.sigma_mm);
             sum += s.distance_mm * s.distance_mm;
             signed_sum += 0.5 * (s.flank1_mm + s.flank2_mm);
         }
@@ -135,11 +134,11 @@ void summarise(Deviation& result, const ValidateOptions& options) {
         result.p997_mm = quantile(distance, 0.997);
         result.max_mm = quantile(distance, 1);
     }
-    const double guarded = result.p997_mm + kGuard * quantile(sigma, 0.5);
+    const double guard = guard_mm(result), guarded = result.p997_mm + guard;
     const bool covered = result.coverage >= options.min_coverage, inside = guarded <= result.tolerance_mm;
     result.pass = covered && inside && !distance.empty();
     result.verdict = std::string(result.pass ? "pass" : "fail") + ": p99.7 " + fixed(result.p997_mm, 3) +
-                     " mm + guard " + fixed(guarded - result.p997_mm, 3) + " mm " + (inside ? "within" : "exceeds") +
+                     " mm + guard " + fixed(guard, 3) + " mm " + (inside ? "within" : "exceeds") +
                      " tolerance " + fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
                      " % of the seam measured" +
                      (covered ? "" : ", less than " + fixed(100 * options.min_coverage, 1) + " %");
@@ -157,6 +156,16 @@ Fields describe(ValidateOptions& o) {
         {"tolerance_mm", &o.tolerance_mm,
          "largest deviation that passes; 0: 3 sigmas of the scan's noise, at least 0.1 mm", at_least(0)},
         {"min_coverage", &o.min_coverage, "least share of the seam that must be measured, not bridged", within(0, 1)}};
+}
+
+double guard_mm(const Deviation& deviation) {
+    std::vector<double> sigma;
+    for (const DeviationSample& s : deviation.samples) {
+        if (s.covered) {
+            sigma.push_back(s.sigma_mm);
+        }
+    }
+    return kGuard * quantile(sigma, 0.5);
 }
 
 Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options) {

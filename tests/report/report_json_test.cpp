@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/config.hpp"
+#include "pipeline/digest.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/tables.hpp"
 #include "stages/error.hpp"
@@ -34,16 +36,54 @@ TEST(ReportJson, GivesTheVerdictOfThePartAndOfEachSeam) {
     EXPECT_EQ(failed.at("verdict"), "fail");
     EXPECT_EQ(failed.at("seams")[0].at("verdict"), "pass");
     EXPECT_EQ(failed.at("seams")[1].at("verdict"), "fail");
-    EXPECT_EQ(failed.at("sentence"), "1 of 2 seams within tolerance of the scanned surfaces");
+    const PartResult part = example_part(false);
+    const double used = (part.deviations[1].p997_mm + 2 * 0.004) / 0.1;  // all sigmas are 0.004, the tolerance 0.1
+    EXPECT_EQ(failed.at("sentence"), "1 of 2 seams within tolerance of the scanned surfaces; the worst, seam 1, uses " +
+                                         std::to_string(std::lround(100 * used)) + " % of its tolerance");
     EXPECT_EQ(find(failed.at("rows"), "seams_in_tolerance").at("verdict"), "fail");
     EXPECT_EQ(find(failed.at("seams")[1].at("rows"), "in_tolerance").at("verdict"), "fail");
+}
+
+TEST(ReportJson, NamesScanSettingsAndBuildByTheirHashes) {
+    PartResult part = example_part();
+    part.origin = {"tee.ply", std::string(64, 'a'), "2026-03-31 14:05 UTC"};
+    const Json report = Json::parse(report_json(part));
+    EXPECT_EQ(find(report.at("identity"), "scan_file").at("value"), "tee.ply");
+    EXPECT_EQ(find(report.at("identity"), "scan_sha256").at("value"), std::string(64, 'a'));
+    const std::string settings = find(report.at("identity"), "config_sha256").at("value");
+    EXPECT_EQ(settings, sha256(config_json(part.config)));
+    EXPECT_EQ(find(report.at("identity"), "build_sha256").at("value"), sha256_of_file("/proc/self/exe"));
+    EXPECT_EQ(report.dump().find("2026-03-31"), std::string::npos) << "a copied scan gives the same numbers";
+    part.config.plan.speed_mm_s = 7;
+    EXPECT_NE(find(Json::parse(report_json(part)).at("identity"), "config_sha256").at("value"), settings);
+}
+
+TEST(ReportJson, ListsTheWorstPlacesOfEachSeam) {
+    const PartResult part = example_part();
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Json places = report_of_example().at("seams")[i].at("worst_places");
+        ASSERT_EQ(places.size(), 3U);
+        double most = 0;
+        for (const DeviationSample& s : part.deviations[i].samples) {
+            most = s.covered ? std::max(most, s.distance_mm) : most;
+        }
+        EXPECT_EQ(places[0].at("deviation_mm"), most);
+        EXPECT_GE(places[1].at("deviation_mm"), places[2].at("deviation_mm"));
+        for (const Json& place : places) {
+            const auto& samples = part.deviations[i].samples;
+            EXPECT_TRUE(std::any_of(samples.begin(), samples.end(), [&](const DeviationSample& s) {
+                return place.at("station_mm") == s.station_mm && place.at("x_mm") == s.p.x() &&
+                       place.at("flank2_mm") == s.flank2_mm;
+            }));
+        }
+    }
 }
 
 TEST(ReportJson, EveryRowHasNameValueUnitAndVerdictAndNamesThatEndInTheUnit) {
     const Json report = report_of_example();
     const std::map<std::string, std::string> suffix{
         {"mm", "_mm"}, {"°", "_deg"}, {"s", "_s"}, {"%", "_percent"}, {"1/mm", "_per_mm"}};
-    std::vector<Json> lists{report.at("rows"), report.at("scan").at("rows")};
+    std::vector<Json> lists{report.at("identity"), report.at("rows"), report.at("scan").at("rows")};
     for (const char* group : {"seams", "programs"}) {
         for (const Json& entry : report.at(group)) {
             lists.push_back(entry.at("rows"));
