@@ -77,7 +77,7 @@ FrameOptions quick() {
 
 TEST(SeamMatch, FindsTheFrameFromAnyPoseToTheNoisesOwnLimit) {
     double squares = 0;
-    constexpr int kSets = 5;
+    constexpr int kSets = 2;
     double expanded = 0;
     for (std::uint64_t seed = 1; seed <= kSets; ++seed) {
         const FrameResult r =
