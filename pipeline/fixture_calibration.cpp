@@ -13,6 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
+constexpr const char* kSeamPoints = "seam_points.csv";
+
 void from_balls(const Scan& scan, FixtureCalibration& c) {
     const std::vector<FoundBall> found = find_balls(scan, c.nominal.ball_diameter_mm / 2);
     std::vector<Vector3d> centres;
@@ -108,6 +110,43 @@ void from_planes(const std::vector<TouchedRow>& rows, FixtureCalibration& c) {
     c.frame = calibrate_planes(planes, c.nominal.work_points, c.nominal.frame);
 }
 
+// What a frame is worth along each seam: at its ends and in its middle.
+std::vector<WorkPoint> with_seams(std::vector<WorkPoint> work_points, const std::vector<NominalSeam>& seams) {
+    for (const NominalSeam& seam : seams) {
+        if (!seam.points.empty()) {
+            work_points.push_back({seam.name + ": begin", seam.points.front()});
+            work_points.push_back({seam.name + ": middle", seam.points[seam.points.size() / 2]});
+            work_points.push_back({seam.name + ": end", seam.points.back()});
+        }
+    }
+    return work_points;
+}
+
+void from_seams(const std::vector<std::vector<MeasuredSeamPoint>>& measured, FixtureCalibration& c) {
+    c.nominal.work_points = with_seams(std::move(c.nominal.work_points), c.nominal.seams);
+    c.frame = calibrate_seams(c.nominal.seams, measured, c.nominal.work_points, c.nominal.frame);
+    c.numbers.push_back({"measured seams", static_cast<double>(measured.size()), ""});
+}
+
+BestFitOptions search_options(const NominalFixture& nominal) {
+    const NominalSurfaceFile& surface = nominal.surface;
+    return {nominal.frame, surface.least_share, surface.scan_sensor_mm, surface.surface_sensor_mm};
+}
+
+void from_surface(const Scan& scan, FixtureCalibration& c) {
+    constexpr std::size_t kSamples = 300000;  // of the nominal mesh; the fit takes a tenth as many places from them
+    const NominalSurfaceFile& surface = c.nominal.surface;
+    const Scan nominal = read_surface(surface.file, surface.unit, kSamples);
+    BestFit fit = calibrate_surface(scan, nominal, c.nominal.work_points, search_options(c.nominal));
+    c.frame = std::move(fit.frame);
+    c.inputs.push_back({surface.file.string(), sha256_of_file(surface.file)});
+    c.numbers = {{"noise of the scan", fit.scan_noise_mm, "mm"},
+                 {"scatter about the nominal surface", fit.scale_mm, "mm"},
+                 {"share of the nominal surface seen", fit.share_seen, ""},
+                 {"points of the scan taken", static_cast<double>(fit.points_taken), ""},
+                 {"variance over that of independent points", fit.correlation, ""}};
+}
+
 }  // namespace
 
 FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::path& nominal,
@@ -115,7 +154,8 @@ FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::pat
     FixtureCalibration c;
     c.nominal = read_nominal_fixture(nominal);
     c.inputs.push_back({nominal.string(), sha256_of_file(nominal)});
-    c.inputs.push_back({observations.string(), sha256_of_file(observations)});
+    const fs::path measured = fs::is_directory(observations) ? observations / kSeamPoints : observations;
+    c.inputs.push_back({measured.string(), sha256_of_file(measured)});
     switch (c.nominal.method) {
         case FixtureMethod::balls:
             from_balls(read(observations, read_options), c);
@@ -126,6 +166,16 @@ FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::pat
             break;
         case FixtureMethod::planes:
             from_planes(read_touched_points(observations, c.nominal.sigma_mm), c);
+            break;
+        case FixtureMethod::scanned_planes:
+            c.frame = calibrate_scanned_planes(read(observations, read_options), c.nominal.faces, c.nominal.work_points,
+                                               search_options(c.nominal));
+            break;
+        case FixtureMethod::best_fit:
+            from_surface(read(observations, read_options), c);
+            break;
+        case FixtureMethod::seams:
+            from_seams(read_measured_seams(observations), c);
             break;
     }
     return c;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -51,15 +52,17 @@ public:
         return value && value->is_string() ? value->get<std::string>() : "";
     }
 
-    void number(const std::string& key, bool needed, double& target, double low, bool open = true) {
+    void number(const std::string& key, bool needed, double& target, double low, bool open = true,
+                double high = std::numeric_limits<double>::max()) {
         const Json* value = take(key, needed);
         if (!value) {
             return;
         }
         const double v = value->is_number() ? value->get<double>() : NAN;
-        if (!std::isfinite(v) || v < low || (open && v == low)) {
-            problem(key,
-                    json_excerpt(*value) + " is no number " + (open ? "above " : "of at least ") + Json(low).dump());
+        if (!std::isfinite(v) || v < low || (open && v == low) || v > high) {
+            const bool bounded = high < std::numeric_limits<double>::max();
+            problem(key, json_excerpt(*value) + " is no number " + (open ? "above " : "of at least ") +
+                             Json(low).dump() + (bounded ? " and at most " + Json(high).dump() : ""));
             return;
         }
         target = v;
@@ -67,12 +70,31 @@ public:
 
     Vector3d vector(const std::string& key) {
         const Json* value = take(key, true);
-        const bool three = value && value->is_array() && value->size() == 3 &&
-                           std::all_of(value->begin(), value->end(), [](const Json& v) { return v.is_number(); });
-        if (value && !three) {
-            problem(key, json_excerpt(*value) + " is no vector; [x, y, z] was needed");
+        return value ? vector_of(key, *value) : Vector3d::Zero();
+    }
+
+    std::vector<Vector3d> vectors(const std::string& key) {
+        const Json* list = take(key, true);
+        if (list && !list->is_array()) {
+            problem(key, json_excerpt(*list) + " is no list");
         }
-        return three ? Vector3d((*value)[0], (*value)[1], (*value)[2]) : Vector3d::Zero();
+        std::vector<Vector3d> all;
+        for (std::size_t i = 0; list && list->is_array() && i < list->size(); ++i) {
+            all.push_back(vector_of(key + "/" + std::to_string(i), (*list)[i]));
+        }
+        return all;
+    }
+
+    bool flag(const std::string& key) {
+        const Json* value = take(key, false);
+        if (value && !value->is_boolean()) {
+            problem(key, json_excerpt(*value) + " is neither true nor false");
+        }
+        return value && value->is_boolean() && value->get<bool>();
+    }
+
+    std::optional<Vector3d> vector_if_given(const std::string& key) {
+        return has(key) ? std::optional(vector(key)) : std::nullopt;
     }
 
     template <class F>
@@ -118,6 +140,15 @@ public:
     }
 
 private:
+    Vector3d vector_of(const std::string& key, const Json& value) {
+        const bool three = value.is_array() && value.size() == 3 &&
+                           std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
+        if (!three) {
+            problem(key, json_excerpt(value) + " is no vector; [x, y, z] was needed");
+        }
+        return three ? Vector3d(value[0], value[1], value[2]) : Vector3d::Zero();
+    }
+
     const Json& json_;
     std::string path_;
     std::vector<std::string>& problems_;
@@ -128,8 +159,9 @@ NamedPoint point_of(Object& object) {
     return {object.text("name", true), object.vector("p_mm")};
 }
 
-NominalPlane plane_of(Object& object) {
-    NominalPlane plane;
+// What planes that are touched and planes that are scanned share.
+template <class AnyPlane>
+void read_plane(Object& object, AnyPlane& plane) {
     plane.name = object.text("name", true);
     plane.normal = object.vector("normal");
     if (plane.normal.norm() > 0) {
@@ -138,6 +170,18 @@ NominalPlane plane_of(Object& object) {
         object.problem("normal", "has no direction");
     }
     object.number("offset_mm", true, plane.offset_mm, -1e9);
+}
+
+PlaneFace face_of(Object& object) {
+    PlaneFace face;
+    read_plane(object, face);
+    face.corners = object.vectors("corners_mm");
+    return face;
+}
+
+NominalPlane plane_of(Object& object) {
+    NominalPlane plane;
+    read_plane(object, plane);
     object.each("points", true, [&](Object& point) { plane.points.push_back(point_of(point)); });
     return plane;
 }
@@ -151,8 +195,31 @@ void check_names(Object& root, const std::string& key, const std::vector<std::st
     }
 }
 
+NominalSeam seam_of(Object& object) {
+    NominalSeam seam;
+    seam.name = object.text("name", true);
+    seam.closed = object.flag("closed");
+    seam.points = object.vectors("points_mm");
+    return seam;
+}
+
+// How the scan is searched.
+void read_search(Object& root, NominalSurfaceFile& surface) {
+    root.number("least_share", false, surface.least_share, 0, true, 1);
+    surface.scan_sensor_mm = root.vector_if_given("sensor_mm");
+}
+
+NominalSurfaceFile surface_of(Object& root, const std::filesystem::path& folder) {
+    NominalSurfaceFile surface;
+    read_search(root, surface);
+    surface.file = folder / root.text("surface", true);
+    surface.unit = static_cast<Unit>(root.choice("surface_unit", false, kUnitNames, 0));
+    surface.surface_sensor_mm = root.vector_if_given("surface_sensor_mm");
+    return surface;
+}
+
 // What the method needs beside what all take.
-void read_method(Object& root, NominalFixture& n) {
+void read_method(Object& root, const std::filesystem::path& folder, NominalFixture& n) {
     std::vector<std::string> names;
     switch (n.method) {
         case FixtureMethod::balls:
@@ -169,16 +236,33 @@ void read_method(Object& root, NominalFixture& n) {
             root.number("sigma_mm", false, n.sigma_mm, 0);
             root.each("planes", true, [&](Object& o) { n.planes.push_back(plane_of(o)); });
             break;
+        case FixtureMethod::scanned_planes:
+            read_search(root, n.surface);
+            root.each("planes", true, [&](Object& o) { n.faces.push_back(face_of(o)); });
+            break;
+        case FixtureMethod::best_fit:
+            n.surface = surface_of(root, folder);
+            break;
+        case FixtureMethod::seams:
+            root.each("seams", true, [&](Object& o) { n.seams.push_back(seam_of(o)); });
+            break;
     }
     for (const NamedPoint& feature : n.features) {
         names.push_back(feature.name);
+    }
+    for (const PlaneFace& face : n.faces) {
+        names.push_back(face.name);
+    }
+    for (const NominalSeam& seam : n.seams) {
+        names.push_back(seam.name);
     }
     for (const NominalPlane& plane : n.planes) {
         for (const NamedPoint& point : plane.points) {
             names.push_back(point.name);
         }
     }
-    check_names(root, n.method == FixtureMethod::balls ? "balls" : "points", names);
+    const bool balls = n.method == FixtureMethod::balls, seams = n.method == FixtureMethod::seams;
+    check_names(root, balls ? "balls" : seams ? "seams" : "points", names);
 }
 
 }  // namespace
@@ -193,7 +277,7 @@ NominalFixture read_nominal_fixture(const std::filesystem::path& file) {
         n.name = root.text("name", true);
         n.method = static_cast<FixtureMethod>(root.choice("method", true, kFixtureMethodNames, 0));
         if (problems.empty()) {
-            read_method(root, n);
+            read_method(root, file.parent_path(), n);
             root.each("work_points", false, [&](Object& o) {
                 const NamedPoint p = point_of(o);
                 n.work_points.push_back({p.name, p.p});

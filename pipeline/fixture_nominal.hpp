@@ -2,17 +2,20 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "stages/calibrate/calibrate.hpp"
+#include "stages/read/read.hpp"
 
 /// The files that a fixture calibration reads.
 namespace seampath {
 
-enum class FixtureMethod { balls, points, three_points, planes };
-inline constexpr std::array<std::string_view, 4> kFixtureMethodNames{"balls", "points", "three-points", "planes"};
+enum class FixtureMethod { balls, points, three_points, planes, scanned_planes, best_fit, seams };
+inline constexpr std::array<std::string_view, 7> kFixtureMethodNames{
+    "balls", "points", "three-points", "planes", "scan-planes", "best-fit", "seams"};
 
 /// A datum plane and where it is to be touched.
 struct NominalPlane {
@@ -20,6 +23,14 @@ struct NominalPlane {
     Eigen::Vector3d normal;
     double offset_mm = 0;
     std::vector<NamedPoint> points;
+};
+
+/// How a scan is searched, and the nominal surface of a best fit: a mesh, or a golden scan.
+struct NominalSurfaceFile {
+    std::filesystem::path file;  ///< empty for planes
+    Unit unit = Unit::automatic;
+    double least_share = 0.15;
+    std::optional<Eigen::Vector3d> scan_sensor_mm, surface_sensor_mm;
 };
 
 /// What is known of a fixture before it is measured.
@@ -31,13 +42,16 @@ struct NominalFixture {
     double sigma_mm = 0;               ///< 1-sigma of a touched point that names none of its own
     std::vector<NamedPoint> features;  ///< balls or points
     std::vector<NominalPlane> planes;
+    std::vector<PlaneFace> faces;
+    NominalSurfaceFile surface;
+    std::vector<NominalSeam> seams;
     std::vector<WorkPoint> work_points;
     double change_limit_mm = 0.2;  ///< most that a work point may have moved since the last accepted calibration
     FrameOptions frame;
 };
 
-/// Reads the nominal file: JSON with comments, all lengths in mm, unknown keys an error. Throws one InputError with all
-/// problems, a line each.
+/// Reads the nominal file: JSON with comments, all lengths in mm, files as they lie from it, unknown keys an error.
+/// Throws one InputError with all problems, a line each.
 NominalFixture read_nominal_fixture(const std::filesystem::path& file);
 
 struct TouchedRow {
@@ -50,5 +64,8 @@ struct TouchedRow {
 /// `# unit: m` says what the numbers are in, mm otherwise. `sigma_mm` stands for points without one. Throws InputError
 /// naming file and line.
 std::vector<TouchedRow> read_touched_points(const std::filesystem::path& file, double sigma_mm);
+
+/// Reads measured seams: the folder of a run, or its seam_points.csv. Throws InputError naming file and line.
+std::vector<std::vector<MeasuredSeamPoint>> read_measured_seams(const std::filesystem::path& file);
 
 }  // namespace seampath

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -12,6 +13,7 @@ namespace seampath {
 namespace {
 
 constexpr std::size_t kMaxPointBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxSeamBytes = std::size_t{1} << 28;
 constexpr std::array<std::string_view, 3> kUnits{"mm", "m", "inch"};
 constexpr std::array<double, 3> kMmPerUnit{1, 1000, 25.4};
 
@@ -35,11 +37,15 @@ std::vector<std::string_view> cells_of(std::string_view row) {
     }
 }
 
-class PointReader {
+/// A table with a header, row by row: what a cell holds, and where it stands when it is wrong.
+class TableReader {
 public:
-    PointReader(std::string file, double sigma_mm) : file_(std::move(file)), sigma_mm_(sigma_mm) {}
+    TableReader(std::string file, std::vector<std::string> needed)
+        : file_(std::move(file)), needed_(std::move(needed)) {}
 
-    std::vector<TouchedRow> read(std::string_view text) {
+    /// Calls take_row() for each row and take_comment(text) for each line that begins with #.
+    template <class Comment, class Row>
+    void read(std::string_view text, const Comment& take_comment, const Row& take_row) {
         while (!text.empty()) {
             const auto end = std::min(text.find('\n'), text.size());
             ++line_;
@@ -49,51 +55,23 @@ public:
             } else if (!row.empty() && columns_.empty()) {
                 take_header(row);
             } else if (!row.empty()) {
-                take_row(row);
+                cells_ = cells_of(row);
+                if (cells_.size() != width_) {
+                    fail(std::to_string(cells_.size()) + " columns where the header has " + std::to_string(width_));
+                }
+                take_row();
             }
             text.remove_prefix(std::min(end + 1, text.size()));
         }
-        if (rows_.empty()) {
-            fail("there is no touched point; a header name,x,y,z and a row a point were needed");
-        }
-        return std::move(rows_);
     }
 
-private:
     [[noreturn]] void fail(const std::string& what) const {
         throw InputError("points: " + file_ + ":" + std::to_string(line_) + ": " + what);
     }
-
-    void take_comment(std::string_view comment) {
-        constexpr std::string_view kUnit = "unit:";
-        if (!comment.starts_with(kUnit)) {
-            return;
-        }
-        const std::string unit(trimmed(comment.substr(kUnit.size())));
-        for (std::size_t i = 0; i < kUnits.size(); ++i) {
-            if (unit == kUnits[i]) {
-                mm_per_unit_ = kMmPerUnit[i];
-                return;
-            }
-        }
-        fail("the unit \"" + unit + "\" is unknown; there are " + join(kUnits));
-    }
-
-    void take_header(std::string_view row) {
-        const auto cells = cells_of(row);
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            columns_[std::string(cells[i])] = i;
-        }
-        for (const char* column : {"name", "x", "y", "z"}) {
-            if (!columns_.contains(column)) {
-                fail(std::string("there is no column \"") + column + "\"; a header name,x,y,z was needed");
-            }
-        }
-        width_ = cells.size();
-    }
-
-    double number(const std::vector<std::string_view>& cells, const std::string& column) const {
-        const std::string_view cell = cells[columns_.at(column)];
+    bool has(const std::string& column) const { return columns_.contains(column); }
+    std::string text(const std::string& column) const { return std::string(cells_[columns_.at(column)]); }
+    double number(const std::string& column) const {
+        const std::string_view cell = cells_[columns_.at(column)];
         double value = NAN;
         const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
         if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) {
@@ -102,40 +80,99 @@ private:
         }
         return value;
     }
+    Eigen::Vector3d point() const { return {number("x"), number("y"), number("z")}; }
 
-    void take_row(std::string_view row) {
+private:
+    void take_header(std::string_view row) {
         const auto cells = cells_of(row);
-        if (cells.size() != width_) {
-            fail(std::to_string(cells.size()) + " columns where the header has " + std::to_string(width_));
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            columns_[std::string(cells[i])] = i;
         }
-        TouchedRow touched{std::string(cells[columns_.at("name")]), {}, sigma_mm_};
-        touched.p = mm_per_unit_ * Eigen::Vector3d(number(cells, "x"), number(cells, "y"), number(cells, "z"));
-        if (columns_.contains("sigma_mm")) {
-            touched.sigma_mm = number(cells, "sigma_mm");
+        std::string header;
+        for (const std::string& column : needed_) {
+            header += (header.empty() ? "" : ",") + column;
         }
-        if (!(touched.sigma_mm > 0)) {
-            fail("there is no 1-sigma above 0 for \"" + touched.name +
-                 "\"; give a column sigma_mm, or sigma_mm in the nominal file");
+        for (const std::string& column : needed_) {
+            if (!columns_.contains(column)) {
+                fail("there is no column \"" + column + "\"; a header " + header + " was needed");
+            }
         }
-        if (!seen_.insert(touched.name).second) {
-            fail("\"" + touched.name + "\" stands twice");
-        }
-        rows_.push_back(touched);
+        width_ = cells.size();
     }
 
     std::string file_;
-    double sigma_mm_;
-    double mm_per_unit_ = 1;
+    std::vector<std::string> needed_;
     std::size_t line_ = 0, width_ = 0;
     std::map<std::string, std::size_t> columns_;
-    std::set<std::string> seen_;
-    std::vector<TouchedRow> rows_;
+    std::vector<std::string_view> cells_;
 };
+
+/// What a comment says that the numbers are in, as mm.
+void take_unit(const TableReader& table, std::string_view comment, double& mm_per_unit) {
+    constexpr std::string_view kUnit = "unit:";
+    if (!comment.starts_with(kUnit)) {
+        return;
+    }
+    const std::string unit(trimmed(comment.substr(kUnit.size())));
+    const auto known = std::find(kUnits.begin(), kUnits.end(), unit);
+    if (known == kUnits.end()) {
+        table.fail("the unit \"" + unit + "\" is unknown; there are " + join(kUnits));
+    }
+    mm_per_unit = kMmPerUnit[static_cast<std::size_t>(known - kUnits.begin())];
+}
 
 }  // namespace
 
 std::vector<TouchedRow> read_touched_points(const std::filesystem::path& file, double sigma_mm) {
-    return PointReader(file.string(), sigma_mm).read(read_file(file, kMaxPointBytes, "points"));
+    TableReader table(file.string(), {"name", "x", "y", "z"});
+    std::vector<TouchedRow> rows;
+    std::set<std::string> seen;
+    double mm_per_unit = 1;
+    const auto take_row = [&] {
+        TouchedRow row{table.text("name"), mm_per_unit * table.point(), sigma_mm};
+        if (table.has("sigma_mm")) {
+            row.sigma_mm = table.number("sigma_mm");
+        }
+        if (!(row.sigma_mm > 0)) {
+            table.fail("there is no 1-sigma above 0 for \"" + row.name +
+                       "\"; give a column sigma_mm, or sigma_mm in the nominal file");
+        }
+        if (!seen.insert(row.name).second) {
+            table.fail("\"" + row.name + "\" stands twice");
+        }
+        rows.push_back(row);
+    };
+    table.read(
+        read_file(file, kMaxPointBytes, "points"),
+        [&](std::string_view comment) { take_unit(table, comment, mm_per_unit); }, take_row);
+    if (rows.empty()) {
+        table.fail("there is no touched point; a header name,x,y,z and a row a point were needed");
+    }
+    return rows;
+}
+
+std::vector<std::vector<MeasuredSeamPoint>> read_measured_seams(const std::filesystem::path& file) {
+    const bool folder = std::filesystem::is_directory(file);
+    const std::filesystem::path points = folder ? file / "seam_points.csv" : file;
+    TableReader table(points.string(), {"seam", "x", "y", "z", "sigma_mm"});
+    std::map<std::string, std::vector<MeasuredSeamPoint>> seams;
+    const auto take_row = [&] {
+        const double sigma = table.number("sigma_mm");
+        if (!(sigma > 0)) {
+            table.fail("the 1-sigma " + table.text("sigma_mm") + " mm is not above 0");
+        }
+        seams[table.text("seam")].push_back({table.point(), sigma});
+    };
+    table.read(
+        read_file(points, kMaxSeamBytes, "points"), [](std::string_view) {}, take_row);
+    if (seams.empty()) {
+        table.fail("there is no seam point; seam_points.csv of a run, or the run's folder, was needed");
+    }
+    std::vector<std::vector<MeasuredSeamPoint>> list;
+    for (auto& [number, seam] : seams) {
+        list.push_back(std::move(seam));
+    }
+    return list;
 }
 
 }  // namespace seampath

@@ -214,7 +214,11 @@ std::string fixture_result_text(const FixtureCalibration& c) {
         rows.push_back({w.name, fixed(w.in_base.x(), 3), fixed(w.in_base.y(), 3), fixed(w.in_base.z(), 3),
                         fixed(w.expanded_mm, 4), c.change ? fixed(c.change->work_point_mm[i], 4) : "-"});
     }
-    return text + aligned(rows);
+    text += aligned(rows);
+    for (const MethodNumber& n : c.numbers) {
+        text += n.name + ": " + shortest(n.value) + (n.unit.empty() ? "" : " " + n.unit) + "\n";
+    }
+    return text;
 }
 
 }  // namespace seampath

@@ -1,10 +1,12 @@
 #include "pipeline/run.hpp"
 
+#include <chrono>
 #include <set>
 
 #include "pipeline/arms.hpp"
 #include "pipeline/digest.hpp"
 #include "pipeline/files.hpp"
+#include "pipeline/fixture_place.hpp"
 #include "pipeline/pose_option.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/scan_input.hpp"
@@ -29,22 +31,31 @@ std::vector<int> seams_to_weld(const PartResult& part) {
     return seams;
 }
 
-/// The arm of plan.arm in its place, and what a plan with it depends on beside the plan's own options.
+/// The arm of plan.arm and the fixture of plan.fixture in their places, and what a plan with them depends on beside the
+/// plan's own options.
 struct Cell {
     std::optional<ArmCell> arm;
+    std::optional<StoredFixture> fixture;
     std::string input;
 };
 
-Cell cell_of(const Config& config) {
-    if (config.plan.arm.empty()) {
-        return {};
+/// The config then says where the fixture stands.
+Cell cell_of(Config& config) {
+    Cell cell;
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    cell.fixture = put_in_place(config, std::chrono::duration<double>(now).count());
+    if (cell.fixture) {
+        cell.input = place_key(*cell.fixture);
     }
-    const ArmFile file = load_arm(config.plan.arm);
-    std::string input = file.text;
-    for (const double number : config.export_.base_from_scan) {
-        input += "\n" + shortest(number);
+    if (!config.plan.arm.empty()) {
+        const ArmFile file = load_arm(config.plan.arm);
+        cell.input += file.text;
+        for (const double number : config.export_.base_from_scan) {
+            cell.input += "\n" + shortest(number);
+        }
+        cell.arm = {file.arm, pose_of(config.export_.base_from_scan), pose_of(config.plan.flange_from_tool)};
     }
-    return {ArmCell{file.arm, pose_of(config.export_.base_from_scan), pose_of(config.plan.flange_from_tool)}, input};
+    return cell;
 }
 
 Plan plan_seams(const PartResult& part, const Cell& cell) {
@@ -52,7 +63,11 @@ Plan plan_seams(const PartResult& part, const Cell& cell) {
     for (const int i : part.planned_seams) {
         models.push_back(part.models.at(static_cast<std::size_t>(i)));
     }
-    return models.empty() ? Plan() : plan(models, part.config.plan, cell.arm);
+    Plan made = models.empty() ? Plan() : plan(models, part.config.plan, cell.arm);
+    if (cell.fixture) {
+        add_place_sigma(*cell.fixture, made);
+    }
+    return made;
 }
 
 /// Whether anything may be written that a robot runs.
@@ -93,8 +108,8 @@ void plan_and_export(PartResult& part, Walk& walk, const Cell& cell, const std::
 
 /// From the scan to the programs, stage by stage.
 void walk_stages(PartResult& part, Walk& walk) {
+    const Cell cell = cell_of(part.config);  // what is wrong with arm or fixture shows before the work
     const Config& config = part.config;
-    const Cell cell = cell_of(config);  // what is wrong with an arm shows before the work
     const auto& seams = part.extraction.seams;
     walk.stage(
         "extract", part.extraction, [&] { return extract(part.scan, config.extract); }, extract_summary);
@@ -211,7 +226,7 @@ PartResult run_nominal(const std::string& name, std::vector<SeamModel> models, c
     Walk walk(part, progress, &folder);
     remove_products(folder);
     walk.write("config.resolved.json", config_json(config));
-    plan_and_export(part, walk, cell_of(config), encode(part.models));
+    plan_and_export(part, walk, cell_of(part.config), encode(part.models));
     walk.always(
         "report", [&] { write_products(part, walk); }, report_summary);
     return part;

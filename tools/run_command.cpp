@@ -30,6 +30,7 @@ struct RunArguments {
     std::optional<fs::path> config;
     std::string joint;
     std::string robot;
+    std::string fixture;
     std::vector<std::string> set;
     std::string from;
     bool fresh = false;
@@ -55,6 +56,9 @@ std::vector<Override> overrides(const RunArguments& given) {
     }
     if (!given.robot.empty()) {
         all.push_back({"--robot", "export.robots", given.robot});
+    }
+    if (!given.fixture.empty()) {
+        all.push_back({"--fixture", "plan.fixture", given.fixture});
     }
     return all;
 }
@@ -214,6 +218,9 @@ Command run_command(CLI::App& program) {
         "joint kind: auto, fillet, lap, butt, v-groove, corner, saddle; the same as --set extract.joint=KIND");
     app->add_option("--robot", given->robot,
                     "robots, with commas between, of " + join(kRobotNames) + "; the same as --set export.robots=NAMES");
+    app->add_option("--fixture", given->fixture,
+                    "result.json of a fixture calibration, where the program moves to; the same as --set "
+                    "plan.fixture=FILE");
     app->add_option("--set", given->set, "stage.key=value, over the config file")->allow_extra_args(false);
     app->add_option("--from", given->from, "compute again from this stage on: " + join(kStageNames));
     app->add_flag("--fresh", given->fresh, "compute everything again");

@@ -161,4 +161,66 @@ struct DatumPlane {
 FrameResult calibrate_planes(const std::vector<DatumPlane>& planes, const std::vector<WorkPoint>& work_points,
                              const FrameOptions& options);
 
+struct BestFitOptions {
+    FrameOptions frame;
+    double least_share = 0.15;                                         ///< of the nominal surface that the scan shows
+    std::optional<Eigen::Vector3d> scan_sensor_mm, nominal_sensor_mm;  ///< about where they were seen from
+};
+
+/// A scan laid on a nominal surface. The features of `frame` are the surface's smooth faces.
+struct BestFit {
+    FrameResult frame;
+    double scan_noise_mm = 0;      ///< robust 1-sigma of the scan about its own surface
+    double scale_mm = 0;           ///< the same about the nominal surface
+    double share_seen = 0;         ///< of the nominal surface
+    std::size_t points_taken = 0;  ///< of the scan
+    double correlation = 1;        ///< variance of the frame over that of independent points, the largest of six
+};
+
+/// The frame that lays a scan on a nominal surface, without a guess: poses by point-pair features, then point-to-plane
+/// least squares with Tukey's biweight. Whatever else the scan shows may be around. The nominal surface is evenly
+/// spread points with normals (a mesh that was sampled), or a golden scan. The covariance is that of clustered errors
+/// (Liang and Zeger, Biometrika 73, 1986), so that neighbours may share theirs. Faults name the directions that the
+/// surface does not hold, and poses that fit as well as the best. `frame.weak_ratio` is not used: a direction that
+/// holds less than a five-hundredth of the mean information is held by errors of normals. Throws InputError when a
+/// cloud is too small, or nothing says from which side it was seen.
+BestFit calibrate_surface(const Scan& scan, const Scan& nominal, const std::vector<WorkPoint>& work_points,
+                          const BestFitOptions& options);
+
+/// A nominal plane of the part, as far as it reaches.
+struct PlaneFace {
+    std::string name;
+    Eigen::Vector3d normal;                ///< unit, out of the material, part frame
+    double offset_mm = 0;                  ///< of the plane: normal . q = offset
+    std::vector<Eigen::Vector3d> corners;  ///< of a convex polygon on it, in order, at least 3
+};
+
+/// Datum planes in the order of their precedence (3-2-1) as a scan shows them among whatever lies around: found as
+/// calibrate_surface() finds a nominal surface, then each by the means of its points over some tens of fields. Throws
+/// InputError for other than three planes that stand across each other, corners off their plane, a plane that the scan
+/// does not show, and as calibrate_surface() does; the faults of the search are those of the result.
+FrameResult calibrate_scanned_planes(const Scan& scan, const std::vector<PlaneFace>& planes,
+                                     const std::vector<WorkPoint>& work_points, const BestFitOptions& options);
+
+/// A nominal seam as a polyline.
+struct NominalSeam {
+    std::string name;
+    bool closed = false;                  ///< the last point is joined to the first
+    std::vector<Eigen::Vector3d> points;  ///< at least 2, part frame, mm
+};
+
+struct MeasuredSeamPoint {
+    Eigen::Vector3d p;    ///< base frame, mm
+    double sigma_mm = 0;  ///< 1-sigma across the seam, above 0
+};
+
+/// The frame in which measured seams lie on the nominal ones, without a guess: pairs of points with their tangents give
+/// poses, then point-to-line least squares. Which measured seam is which nominal one follows from the pose; the
+/// features are the nominal seams that something lies on. A point says nothing of where along its seam it is, so a
+/// straight seam alone leaves its own direction and the turn about it open. Faults name another pose that fits as well.
+/// Throws InputError for less than 4 measured points, a nominal seam without length, and when nothing fits.
+FrameResult calibrate_seams(const std::vector<NominalSeam>& nominal,
+                            const std::vector<std::vector<MeasuredSeamPoint>>& measured,
+                            const std::vector<WorkPoint>& work_points, const FrameOptions& options);
+
 }  // namespace seampath

@@ -191,6 +191,10 @@ Fields describe(PlanOptions& o) {
          within(0, 180)},
         {"arm_acceleration_deg_s2", &o.arm_acceleration_deg_s2, "acceleration limits of the arm's axes, deg/s2",
          above(0), 6},
+        {"fixture", &o.fixture,
+         "result.json of a fixture calibration: the program moves to where it says that the part stands, in place of "
+         "export.base_from_scan, and its uncertainty joins that of the waypoints; empty: none"},
+        {"fixture_max_age_h", &o.fixture_max_age_h, "oldest calibration that is taken, hours; none: any", above(0)},
     };
 }
 

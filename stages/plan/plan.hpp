@@ -47,6 +47,8 @@ struct PlanOptions {
     std::vector<double> flange_from_tool{0, 0, 0, 1, 0, 0, 0};  ///< x, y, z mm, qw, qx, qy, qz
     double arm_roll_deg = 180;
     std::vector<double> arm_acceleration_deg_s2{500, 500, 500, 1000, 1000, 1000};
+    std::string fixture;  ///< file; says nothing to plan(), which works in the frame of the scan
+    std::optional<double> fixture_max_age_h;
 };
 Fields describe(PlanOptions&);
 

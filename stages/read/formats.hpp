@@ -12,6 +12,9 @@ namespace seampath {
 /// other property and element is walked over, so that a file cut short or followed by other bytes is refused.
 Cloud read_ply(const Source& source);
 
+/// The same file's faces (lists vertex_indices or vertex_index) as triangles; none, and no vertices, for a cloud.
+Mesh read_ply_mesh(const Source& source);
+
 /// PCD, ascii, binary and binary_compressed. Takes x y z and normal_x normal_y normal_z. A raster stays one; the sensor
 /// is the file's VIEWPOINT where that is not the default, or the origin for a raster.
 Cloud read_pcd(const Source& source);

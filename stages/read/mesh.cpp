@@ -122,6 +122,14 @@ double largest_extent(const Mesh& mesh) {
     return std::max(0.0, (high - low).maxCoeff());
 }
 
+double area(const Mesh& mesh) {
+    double twice = 0;
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        twice += area_vector(corners(mesh, face)).norm();
+    }
+    return twice / 2;
+}
+
 Cloud sample_mesh(const Source& source, const Mesh& mesh, double spacing) {
     if (mesh.faces.empty()) {
         return vertices_as_points(mesh);

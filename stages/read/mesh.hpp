@@ -27,6 +27,9 @@ Eigen::Vector3d take_vector(const Source& source, std::size_t at, std::string_vi
 /// Largest side of the axis-parallel box of all finite vertices: a mesh has no stray returns. 0 for no vertices.
 double largest_extent(const Mesh& mesh);
 
+/// Of all faces that can be used, in the square of the file's unit.
+double area(const Mesh& mesh);
+
 /// Points on the faces, one per spacing^2 of area, with the normals of their faces; `spacing` in the file's unit. The
 /// fractional rest of each face is carried on to the next, so that small faces get their share together. Point number n
 /// is element n of the additive recurrence R2 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -108,8 +109,14 @@ Scan read_points(const Source& source, const std::string& name, ScanFormat forma
     return finish(name, unit, std::move(cloud));
 }
 
+Mesh mesh_of(const Source& source, ScanFormat format) {
+    return format == ScanFormat::stl   ? read_stl(source)
+           : format == ScanFormat::obj ? read_obj(source)
+                                       : read_ply_mesh(source);
+}
+
 Scan read_mesh(const Source& source, const std::string& name, ScanFormat format, const ReadOptions& options) {
-    const Mesh mesh = format == ScanFormat::stl ? read_stl(source) : read_obj(source);
+    const Mesh mesh = mesh_of(source, format);
     const UnitChoice unit = choose_unit(source, options.unit, format, largest_extent(mesh));
     Cloud cloud = sample_mesh(source, mesh, options.mesh_spacing_mm / unit.mm_per_unit);
     check_not_empty(source, cloud);
@@ -190,6 +197,25 @@ Scan read(const std::filesystem::path& file, const ReadOptions& options) {
     const FileBytes bytes(file);
     const Source source{bytes.view(), file.string()};
     return read_source(source, file.stem().string(), format_of(file, source), options);
+}
+
+Scan read_surface(const std::filesystem::path& file, Unit unit, std::size_t count) {
+    const FileBytes bytes(file);
+    const Source source{bytes.view(), file.string()};
+    const ScanFormat format = format_of(file, source);
+    const std::string name = file.stem().string();
+    if (format == ScanFormat::pcd || format == ScanFormat::text) {
+        return read_points(source, name, format, {unit});
+    }
+    const Mesh mesh = mesh_of(source, format);
+    if (mesh.faces.empty()) {
+        return read_source(source, name, format, {unit});
+    }
+    const UnitChoice chosen = choose_unit(source, unit, format, largest_extent(mesh));
+    const double spacing = std::sqrt(area(mesh) / static_cast<double>(count));
+    Cloud cloud = sample_mesh(source, mesh, spacing > 0 ? spacing : 1);
+    check_not_empty(source, cloud);
+    return finish(name, chosen, std::move(cloud));
 }
 
 Scan read_bytes(std::span<const std::byte> bytes, ScanFormat format, const std::string& name,

@@ -27,7 +27,11 @@ enum class ScanFormat { ply, pcd, text, stl, obj };
 /// hold.
 Scan read(const std::filesystem::path& file, const ReadOptions& options);
 
-/// The same from memory. `name` goes into the scan and into messages.
+/// Reads a surface to hold scans against: a mesh (STL, OBJ, or PLY with faces) as about `count` evenly spread points
+/// with the normals of its faces; any other file, e.g. a golden scan, as read() does.
+Scan read_surface(const std::filesystem::path& file, Unit unit, std::size_t count);
+
+/// The same as read() from memory. `name` goes into the scan and into messages.
 Scan read_bytes(std::span<const std::byte> bytes, ScanFormat format, const std::string& name,
                 const ReadOptions& options);
 

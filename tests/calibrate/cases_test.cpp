@@ -23,6 +23,17 @@ TEST(FixtureCases, TheBallThatMovedIsNamed) {
     EXPECT_EQ(moved_ball_case(1, 4).good, 4);
 }
 
+TEST(FixtureCases, AScanIsLaidOnAMeshWithoutAGuess) {
+    const CaseResult r = surface_case(1, 2, 320);
+    EXPECT_EQ(r.good, 2) << r.note;
+    EXPECT_LE(r.largest_mm, 0.02);
+}
+
+TEST(FixtureCases, PartsWithoutAPoseOfTheirOwnAreRefusedByName) {
+    const CaseResult r = open_surface_case(0, 6, 256);
+    EXPECT_EQ(r.good, 6) << r.note;
+}
+
 std::string refusal(const BallScene& scene, double tolerance = 1) {
     std::vector<Vector3d> centres;
     for (const NamedPoint& ball : scene.balls) {

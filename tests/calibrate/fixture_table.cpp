@@ -30,6 +30,8 @@ void print(int sets) {
                "first that is not"}};
     run(rows, "four balls", "rms <= 0.01, in 95 %: 90 to 98", [&] { return ball_case(1, sets); });
     run(rows, "one ball moved", ">= 99 %", [&] { return moved_ball_case(1, sets); });
+    run(rows, "best fit to a mesh", ">= 99 % within 0.02 mm, 0.005 deg", [&] { return surface_case(1, sets); });
+    run(rows, "best fit, open or alike", "all named", [&] { return open_surface_case(1, sets); });
     std::cout << aligned(rows);
 }
 

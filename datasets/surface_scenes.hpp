@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "datasets/fixture_scenes.hpp"
+#include "datasets/part_mesh.hpp"
+
+/// Parts with known truth that stand among clutter on a table, seen once by a camera from above.
+namespace seampath {
+
+/// The first six have one pose only; of the rest some direction is open, or several poses look alike.
+enum class FixturePart { bracket, node, housing, tee, wedge, hat, sheet, pipe, sleeve, ball, cuboid, flange };
+inline constexpr std::array<std::string_view, 12> kFixturePartNames{
+    "bracket", "pipe node", "housing", "tee", "wedge", "hat", "sheet", "pipe", "sleeve", "ball", "cuboid", "flange"};
+inline constexpr std::size_t kDefiniteParts = 6;
+
+PartMesh part_mesh(FixturePart part);
+
+struct SurfaceScene {
+    FixturePart part = FixturePart::bracket;
+    int width = 640, height = 470;  ///< pixels: 300 800
+    double share = 0.3;             ///< of the points that lie on the part
+    double sigma_mm = 0.05;         ///< along the line of sight
+};
+
+struct SurfaceScan {
+    FixtureScan made;      ///< base frame: any turn, any place
+    double on_part = 0;    ///< share of the points
+    double part_seen = 0;  ///< share of the part's surface that they show, by area
+};
+
+SurfaceScan make_surface_scan(const SurfaceScene& scene, std::uint64_t seed);
+
+}  // namespace seampath
