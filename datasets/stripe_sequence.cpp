@@ -7,6 +7,7 @@
 #include "datasets/picture_file.hpp"
 #include "datasets/portable_math.hpp"
 #include "datasets/rows.hpp"
+#include "pipeline/camera_json.hpp"
 #include "pipeline/files.hpp"
 
 namespace seampath {
@@ -78,22 +79,14 @@ std::vector<std::vector<Vector2d>> courses_at(const Scene& scene, const StripeRi
 }
 
 nlohmann::ordered_json capture_json(const StripeSequence& s) {
-    const CameraModel& c = s.camera;
     nlohmann::ordered_json frames = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < s.images.size(); ++i) {
-        const Vector3d p = s.base_from_camera[i].translation();
-        const Eigen::Quaterniond q(s.base_from_camera[i].linear());
         frames.push_back({{"image", std::to_string(1000 + i).substr(1) + ".png"},
-                          {"base_from_camera", {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}}});
+                          {"base_from_camera", pose_numbers(s.base_from_camera[i])}});
     }
     return {{"kind", "laser_stripe"},
-            {"camera",
-             {{"size_px", {c.width, c.height}},
-              {"matrix_px", {{c.focal_px.x(), 0, c.centre_px.x()}, {0, c.focal_px.y(), c.centre_px.y()}, {0, 0, 1}}},
-              {"distortion", c.distortion}}},
-            {"laser_plane",
-             {{"normal", {s.plane_normal.x(), s.plane_normal.y(), s.plane_normal.z()}},
-              {"distance_mm", s.plane_distance_mm}}},
+            {"camera", camera_json(s.camera)},
+            {"laser_plane", plane_json({s.plane_normal, s.plane_distance_mm})},
             {"frames", frames}};
 }
 
