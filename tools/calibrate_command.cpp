@@ -8,6 +8,7 @@
 #include "pipeline/frame_files.hpp"
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
+#include "tools/calibrate_optics.hpp"
 #include "tools/calibrate_robot.hpp"
 #include "tools/calibrate_study.hpp"
 #include "tools/calibration_date.hpp"
@@ -131,7 +132,16 @@ Command calibrate_command(CLI::App& program) {
     const auto robot = std::make_shared<RobotArguments>();
     const CLI::App* tcp_chosen = tcp_app(*app, *robot);
     const CLI::App* hand_eye_chosen = hand_eye_app(*app, *robot);
+    const auto optics = std::make_shared<OpticsArguments>();
+    const CLI::App* camera_chosen = camera_app(*app, *optics);
+    const CLI::App* laser_chosen = laser_app(*app, *optics);
     return {app, [=]() -> int {
+                if (camera_chosen->parsed()) {
+                    return run_camera(*optics);
+                }
+                if (laser_chosen->parsed()) {
+                    return run_laser(*optics);
+                }
                 if (tcp_chosen->parsed()) {
                     return run_tcp(*robot);
                 }
