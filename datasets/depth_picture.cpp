@@ -9,6 +9,7 @@
 #include "datasets/portable_math.hpp"
 #include "datasets/rng.hpp"
 #include "datasets/rows.hpp"
+#include "pipeline/camera_json.hpp"
 #include "pipeline/files.hpp"
 #include "stages/error.hpp"
 
@@ -95,7 +96,7 @@ std::filesystem::path write_depth_capture(const GreyImage& image, const CameraMo
                                          {"camera", camera_json(camera)},
                                          {"image", "depth.png"},
                                          {"mm_per_unit", noise.mm_per_unit},
-                                         {"base_from_camera", pose_json(scene_from_camera)}};
+                                         {"base_from_camera", pose_numbers(scene_from_camera)}};
     const RunFolder files(folder);
     files.write("depth.png", png_bytes(image));
     files.write("capture.json", capture.dump(2) + "\n");

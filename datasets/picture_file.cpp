@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include <nlohmann/json.hpp>
 #include <png.h>
 
 #include "stages/error.hpp"
@@ -33,18 +32,6 @@ std::string png_bytes(const GreyImage& image) {
     }
     ensure(written, "libpng writes every grey picture");
     return bytes;
-}
-
-nlohmann::ordered_json camera_json(const CameraModel& c) {
-    return {{"size_px", {c.width, c.height}},
-            {"matrix_px", {{c.focal_px.x(), 0, c.centre_px.x()}, {0, c.focal_px.y(), c.centre_px.y()}, {0, 0, 1}}},
-            {"distortion", c.distortion}};
-}
-
-nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose) {
-    const Eigen::Vector3d p = pose.translation();
-    const Eigen::Quaterniond q(pose.linear());
-    return {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
 }
 
 }  // namespace seampath

@@ -7,6 +7,7 @@
 #include "datasets/picture_file.hpp"
 #include "datasets/portable_math.hpp"
 #include "datasets/rows.hpp"
+#include "pipeline/camera_json.hpp"
 #include "pipeline/files.hpp"
 
 namespace seampath {
@@ -81,13 +82,11 @@ nlohmann::ordered_json capture_json(const StripeSequence& s) {
     nlohmann::ordered_json frames = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < s.images.size(); ++i) {
         frames.push_back({{"image", std::to_string(1000 + i).substr(1) + ".png"},
-                          {"base_from_camera", pose_json(s.base_from_camera[i])}});
+                          {"base_from_camera", pose_numbers(s.base_from_camera[i])}});
     }
     return {{"kind", "laser_stripe"},
             {"camera", camera_json(s.camera)},
-            {"laser_plane",
-             {{"normal", {s.plane_normal.x(), s.plane_normal.y(), s.plane_normal.z()}},
-              {"distance_mm", s.plane_distance_mm}}},
+            {"laser_plane", plane_json({s.plane_normal, s.plane_distance_mm})},
             {"frames", frames}};
 }
 

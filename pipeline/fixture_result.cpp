@@ -4,6 +4,7 @@
 #include "pipeline/files.hpp"
 #include "pipeline/fixture_calibration.hpp"
 #include "pipeline/json_text.hpp"
+#include "pipeline/json_values.hpp"
 #include "pipeline/text.hpp"
 #include "stages/angle.hpp"
 #include "stages/error.hpp"
@@ -18,30 +19,6 @@ using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kMaxResultBytes = std::size_t{16} << 20;
 constexpr const char* kKind = "fixture calibration";
-
-Json vector_json(const Vector3d& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
-template <class Matrix>
-Json matrix_json(const Matrix& m) {
-    Json rows = Json::array();
-    for (Eigen::Index i = 0; i < m.rows(); ++i) {
-        Json row = Json::array();
-        for (Eigen::Index k = 0; k < m.cols(); ++k) {
-            row.push_back(m(i, k));
-        }
-        rows.push_back(std::move(row));
-    }
-    return rows;
-}
-
-Json pose_json(const Eigen::Isometry3d& T) {
-    const Eigen::Quaterniond q(T.linear());
-    return {{"position_mm", vector_json(T.translation())},
-            {"quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-            {"matrix", matrix_json(T.matrix())}};
-}
 
 Json features_json(const FrameResult& r) {
     Json list = Json::array();
@@ -104,16 +81,6 @@ Json change_json(const FixtureCalibration& c) {
             {"rz_deg", d[5] / kDegree},
             {"work_points", std::move(points)},
             {"limit_mm", c.change->limit_mm}};
-}
-
-Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic> matrix_of(const Json& json, Eigen::Index rows) {
-    Eigen::MatrixXd m(rows, rows);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-        for (Eigen::Index k = 0; k < rows; ++k) {
-            m(i, k) = json.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(k)).get<double>();
-        }
-    }
-    return m;
 }
 
 std::string yes_no(bool value) {

@@ -1,5 +1,3 @@
-#include <chrono>
-#include <ctime>
 #include <iostream>
 #include <memory>
 
@@ -10,7 +8,10 @@
 #include "pipeline/frame_files.hpp"
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
+#include "tools/calibrate_optics.hpp"
+#include "tools/calibrate_robot.hpp"
 #include "tools/calibrate_study.hpp"
+#include "tools/calibration_date.hpp"
 #include "tools/choice.hpp"
 #include "tools/commands.hpp"
 
@@ -30,23 +31,6 @@ struct FixtureArguments {
     bool accept = false, json = false;
     int number = 1;
 };
-
-/// Now, or the date given, as 2026-11-26T05:00:00Z.
-std::string date_of(const std::string& given) {
-    std::tm time{};
-    if (given.empty()) {
-        const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-        gmtime_r(&now, &time);
-    } else {
-        const char* end = strptime(given.c_str(), "%Y-%m-%dT%H:%M:%SZ", &time);
-        if (!end || *end != '\0') {
-            throw InputError("--date: \"" + given + "\" is no date; one like 2026-11-26T05:00:00Z (UTC) was needed");
-        }
-    }
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &time);
-    return text;
-}
 
 /// The accepted calibration of the folder, if there is one.
 std::optional<StoredFixture> accepted_in(const fs::path& out) {
@@ -69,10 +53,7 @@ void accept(FixtureCalibration& c, bool measured_well, const std::string& reason
 }
 
 int fixture(const FixtureArguments& given) {
-    if (given.accept == given.reason.empty()) {
-        throw InputError(given.accept ? "--accept: a reason was needed; add --reason TEXT"
-                                      : "--reason: it belongs to --accept; add it, or leave the reason out");
-    }
+    check_acceptance(given.accept, given.reason);
     ReadOptions read_options;
     read_options.unit = static_cast<Unit>(choice("--unit", given.unit, kUnitNames));
     const fs::path out = given.out;
@@ -138,7 +119,7 @@ CLI::App* fixture_app(CLI::App& calibrate, FixtureArguments& given) {
 }  // namespace
 
 Command calibrate_command(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("calibrate", "frames of fixtures, with their uncertainty");
+    CLI::App* app = program.add_subcommand("calibrate", "fixtures, tools, cameras and lasers, with their uncertainty");
     app->require_subcommand(1);
     app->footer(
         "Examples:\n"
@@ -150,7 +131,25 @@ Command calibrate_command(CLI::App& program) {
     const CLI::App* fixture_chosen = fixture_app(*app, *given);
     const CLI::App* history_chosen = history_app(*app, *study);
     study_app(*app, *study);
-    return {app, [given, study, fixture_chosen, history_chosen]() -> int {
+    const auto robot = std::make_shared<RobotArguments>();
+    const CLI::App* tcp_chosen = tcp_app(*app, *robot);
+    const CLI::App* hand_eye_chosen = hand_eye_app(*app, *robot);
+    const auto optics = std::make_shared<OpticsArguments>();
+    const CLI::App* camera_chosen = camera_app(*app, *optics);
+    const CLI::App* laser_chosen = laser_app(*app, *optics);
+    return {app, [=]() -> int {
+                if (camera_chosen->parsed()) {
+                    return run_camera(*optics);
+                }
+                if (laser_chosen->parsed()) {
+                    return run_laser(*optics);
+                }
+                if (tcp_chosen->parsed()) {
+                    return run_tcp(*robot);
+                }
+                if (hand_eye_chosen->parsed()) {
+                    return run_hand_eye(*robot);
+                }
                 if (fixture_chosen->parsed()) {
                     return fixture(*given);
                 }
