@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "stages/error.hpp"
+#include "stages/text.hpp"
+
 namespace seampath {
 namespace {
 
@@ -56,6 +59,31 @@ std::optional<Vector3d> direction_of(const CameraModel& camera, const Vector2d& 
         }
     }
     return std::nullopt;
+}
+
+Vector3d point_on_plane(const CameraModel& camera, const Eigen::Isometry3d& camera_from_plane, const Vector2d& pixel) {
+    constexpr double kLeastSine = 0.087;  // of 5 degrees
+    const std::string place = "pixel (" + fixed(pixel.x(), 0) + ", " + fixed(pixel.y(), 0) + ")";
+    const auto direction = direction_of(camera, pixel);
+    if (!direction) {
+        throw InputError("photo: the lens model has no direction for " + place +
+                         "; one that holds over the whole picture was needed; calibrate the camera again");
+    }
+    const Vector3d normal = camera_from_plane.linear().col(2), origin = camera_from_plane.translation();
+    const double towards = normal.dot(*direction), distance = normal.dot(origin);
+    if (std::abs(towards) < kLeastSine * direction->norm()) {
+        throw InputError("photo: at " + place + " the plane is seen edge-on, at " +
+                         fixed(std::asin(std::abs(towards) / direction->norm()) * 57.29577951308232, 1) +
+                         " deg; 5 deg or more were needed; photograph the joint from above");
+    }
+    if (distance / towards <= 0) {
+        throw InputError("photo: at " + place + " the plane is not before the camera; check camera_from_plane");
+    }
+    return camera_from_plane.inverse() * (distance / towards * *direction);
+}
+
+bool is_seen_from_above(const Eigen::Isometry3d& camera_from_plane) {
+    return camera_from_plane.linear().col(2).dot(camera_from_plane.translation()) < 0;
 }
 
 }  // namespace seampath

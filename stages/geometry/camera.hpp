@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 /// A camera's frame: x to the right of the picture, y down, z ahead. Pixels are as in grey_image.hpp.
 namespace seampath {
@@ -26,5 +27,13 @@ Eigen::Vector2d pixel_of(const CameraModel& camera, const Eigen::Vector3d& p_in_
 /// The direction of what is seen at a pixel, so long that its z is 1. Newton's method on the distortion; empty where
 /// the lens model has no such direction, which happens far outside the picture that it was calibrated on.
 std::optional<Eigen::Vector3d> direction_of(const CameraModel& camera, const Eigen::Vector2d& pixel);
+
+/// Where what is seen at a pixel lies on the plane z = 0, plane's frame, mm. Throws InputError where the plane is not
+/// before the camera there, or is seen at less than 5 degrees: a pixel is then a tenth of the distance.
+Eigen::Vector3d point_on_plane(const CameraModel& camera, const Eigen::Isometry3d& camera_from_plane,
+                               const Eigen::Vector2d& pixel);
+
+/// Whether the camera stands on the side of the plane to which its z points.
+bool is_seen_from_above(const Eigen::Isometry3d& camera_from_plane);
 
 }  // namespace seampath

@@ -9,10 +9,12 @@
 #include <png.h>
 
 #include "stages/error.hpp"
+#include "stages/picture/jpeg.hpp"
 
 namespace seampath {
 namespace {
 
+constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
 constexpr std::uint32_t kMostPixelsASide = 1 << 15;
 constexpr std::uint64_t kMostPerByte = 1032;  // what a deflated byte can stand for at the most
 
@@ -62,7 +64,11 @@ bool read_png_rows(PngReader& reader, png_bytepp rows) {
     if (setjmp(png_jmpbuf(reader.png))) {
         return false;
     }
-    png_set_expand_gray_1_2_4_to_8(reader.png);
+    png_set_expand(reader.png);
+    png_set_strip_alpha(reader.png);
+    if (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_COLOR) {
+        png_set_rgb_to_gray(reader.png, PNG_ERROR_ACTION_NONE, 0.299, 0.587);
+    }
     png_set_interlace_handling(reader.png);
     png_read_update_info(reader.png, reader.info);
     png_read_image(reader.png, rows);
@@ -89,14 +95,18 @@ void check_grey(const std::string& name, const PngReader& reader) {
     }
 }
 
-GreyImage decode_png(std::string_view bytes, const std::string& name) {
+enum class Colour { refused, to_brightness };
+
+GreyImage decode_png(std::string_view bytes, const std::string& name, Colour colour) {
     PngReader reader(bytes);
     reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, leave, ignore_warning);
     reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
     if (!reader.info || !read_png_header(reader)) {
         refuse_damaged(name, reader);
     }
-    check_grey(name, reader);
+    if (colour == Colour::refused) {
+        check_grey(name, reader);
+    }
     const std::uint32_t width = png_get_image_width(reader.png, reader.info);
     const std::uint32_t height = png_get_image_height(reader.png, reader.info);
     const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
@@ -124,10 +134,20 @@ GreyImage decode_png(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 GreyImage decode_picture(std::string_view bytes, const std::string& name) {
-    if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) {
+    if (!bytes.starts_with(kPngMagic)) {
         refuse(name, "is no PNG; a grey PNG was needed; convert the picture");
     }
-    return decode_png(bytes, name);
+    return decode_png(bytes, name, Colour::refused);
+}
+
+GreyImage decode_photograph(std::string_view bytes, const std::string& name) {
+    if (bytes.starts_with("\xff\xd8\xff")) {
+        return detail::decode_jpeg(bytes, name);
+    }
+    if (!bytes.starts_with(kPngMagic)) {
+        refuse(name, "is no JPEG and no PNG; a photograph as one of the two was needed; convert it");
+    }
+    return decode_png(bytes, name, Colour::to_brightness);
 }
 
 }  // namespace seampath

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "stages/geometry/robust.hpp"
-#include "stages/stripe/steger.hpp"
+#include "stages/geometry/steger.hpp"
 
 namespace seampath {
 namespace {
@@ -138,11 +138,9 @@ private:
         if (kernel == kernels_.end()) {
             kernel = kernels_.emplace(index, make_kernel(index * kGrid)).first;
         }
-        auto point = ridge_point(image_, kernel->second, column, y, shape.ground, noise_);
-        if (point) {
-            point->width_px = kFwhm * shape.sigma;
-        }
-        return point;
+        const auto ridge = ridge_point(image_, kernel->second, column, y, shape.ground, noise_);
+        return ridge ? std::optional(StripePoint{ridge->p, ridge->normal, kFwhm * shape.sigma, ridge->sigma_px})
+                     : std::nullopt;
     }
 
     /// Rows a column before an end, from the points there; empty when there are too few.

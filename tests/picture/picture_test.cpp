@@ -97,5 +97,23 @@ TEST(Picture, SurvivesDamage) {
     }
 }
 
+TEST(Picture, PhotographsAreReadAsTheirBrightness) {
+    GreyImage image{32, 24, 255, {}};
+    for (int i = 0; i < 32 * 24; ++i) {
+        image.value.push_back(static_cast<float>(40 + 3 * (i % 32) + 2 * (i / 32)));
+    }
+    const std::string jpeg = jpeg_bytes(image);
+    const GreyImage read = decode_photograph(jpeg, "photo");
+    ASSERT_EQ(read.width, 32);
+    ASSERT_EQ(read.height, 24);
+    for (std::size_t i = 0; i < image.value.size(); ++i) {
+        EXPECT_NEAR(read.value[i], image.value[i], 4) << i;
+    }
+    EXPECT_EQ(decode_photograph(png_bytes(image), "photo").value, image.value);
+    EXPECT_THROW(decode_photograph(jpeg.substr(0, jpeg.size() / 2), "photo"), InputError);
+    EXPECT_THROW(decode_photograph("GIF89a", "photo"), InputError);
+    EXPECT_THROW(decode_picture(jpeg, "photo"), InputError) << "stripes and depths are never compressed";
+}
+
 }  // namespace picture_test
 }  // namespace seampath

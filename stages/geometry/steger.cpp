@@ -1,4 +1,4 @@
-#include "stages/stripe/steger.hpp"
+#include "stages/geometry/steger.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-struct Derivatives {
+struct GreyDerivatives {
     double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
 };
 
-Derivatives derivatives(const GreyImage& image, const RidgeKernel& k, int column, int row) {
-    Derivatives d;
+GreyDerivatives grey_derivatives(const GreyImage& image, const RidgeKernel& k, int column, int row) {
+    GreyDerivatives d;
     const std::size_t n = k.g.size();
     const int left = column - k.radius, top = row - k.radius;
     const bool inside = left >= 0 && column + k.radius < image.width;
@@ -35,12 +35,12 @@ Derivatives derivatives(const GreyImage& image, const RidgeKernel& k, int column
 }
 
 /// Unit vector of the Hessian's most negative eigenvalue, pointing down, and that eigenvalue.
-struct Across {
+struct RidgeAcross {
     Vector2d n;
     double curvature;
 };
 
-Across across(const Derivatives& d) {
+RidgeAcross ridge_across(const GreyDerivatives& d) {
     const double half = 0.5 * (d.xx - d.yy), root = std::hypot(half, d.xy);
     const double low = 0.5 * (d.xx + d.yy) - root;
     Vector2d n = half < 0 ? Vector2d(root - half, -d.xy) : Vector2d(d.xy, -(root + half));
@@ -70,11 +70,11 @@ RidgeKernel make_kernel(double sigma) {
     return k;
 }
 
-std::optional<StripePoint> ridge_point(const GreyImage& image, const RidgeKernel& k, int column, double y,
-                                       const GroundSlope& ground, double noise) {
+std::optional<RidgePoint> ridge_point(const GreyImage& image, const RidgeKernel& k, int column, double y,
+                                      const GroundSlope& ground, double noise) {
     constexpr double kHalfPixel = 0.5 + 1e-9;
     constexpr double kNearest = 0.75;   // px: where either neighbour of the middle points to the other
-    constexpr double kSteepest = 0.42;  // of the normal's y: a stripe at 65 degrees
+    constexpr double kSteepest = 0.42;  // of the normal's y: a line at 65 degrees
     const int tries = 2 + static_cast<int>(k.sigma);
     // 1-sigma of the curvature in white noise: the root of the integrals of g''^2 and g^2, 3/(8 sqrt(pi) s^5) and
     // 1/(2 sqrt(pi) s); and of the slope, 1/(4 sqrt(pi) s^3).
@@ -83,10 +83,10 @@ std::optional<StripePoint> ridge_point(const GreyImage& image, const RidgeKernel
     const double slope_noise = noise / (std::sqrt(8 * std::numbers::pi) * s2);
     int row = std::clamp(static_cast<int>(std::lround(y)), 0, image.height - 1);
     double nearest = kNearest;
-    std::optional<StripePoint> best;
+    std::optional<RidgePoint> best;
     for (int i = 0; i < tries; ++i) {
-        const Derivatives d = derivatives(image, k, column, row);
-        const auto [n, curvature] = across(d);
+        const GreyDerivatives d = grey_derivatives(image, k, column, row);
+        const auto [n, curvature] = ridge_across(d);
         if (!(curvature < -4 * curvature_noise) || n.y() < kSteepest) {
             return std::nullopt;
         }
@@ -96,7 +96,7 @@ std::optional<StripePoint> ridge_point(const GreyImage& image, const RidgeKernel
         const double off = step.cwiseAbs().maxCoeff();
         if (off < nearest) {
             nearest = off;
-            best = StripePoint{Vector2d(column, row) + step, n, 0, -slope_noise / curvature};
+            best = RidgePoint{Vector2d(column, row) + step, n, -slope_noise / curvature};
         }
         if (off <= kHalfPixel) {
             break;

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "stages/geometry/camera.hpp"
+#include "stages/geometry/grey_image.hpp"
+#include "stages/types.hpp"
+
+/// A seam between two flat sheets in a photograph.
+namespace seampath {
+
+/// One point of the seam's middle.
+struct PhotoPoint {
+    Eigen::Vector2d p;       ///< px: x to the right, y down, from the middle of the first pixel
+    Eigen::Vector2d normal;  ///< unit, across the seam
+    double sigma_px = 0;     ///< 1-sigma of p along the normal
+    bool modelled = false;   ///< carried over from both sides: a tack, a hole or a highlight hides the seam
+};
+
+/// The seam, from left to right or from top to bottom, and how it was told from other lines.
+struct PhotoLine {
+    std::vector<PhotoPoint> points;
+    double width_px = 0;           ///< of the line, median
+    bool between_borders = false;  ///< it lies midway between two borders, as the seam of a prepared joint does
+    double clarity = 0;            ///< what shows it, in sigmas of texture a block, with the borders
+    double rival_clarity = 0;      ///< the same of the best line elsewhere
+};
+
+/// The seam of two sheets: a line darker or brighter than both of its sides, that may change from the one to the other,
+/// crosses the picture from side to side or from top to bottom, and is at most 45 degrees off that course. Empty where
+/// there is none.
+///
+/// Texture shows many short lines; a seam is what agrees over the whole picture. So lines of many widths and slopes are
+/// measured in blocks, against what texture gives around them, and the path that is worth most is found by dynamic
+/// programming over places and slopes: it goes straight over tacks, holes and highlights. Of several lines side by side
+/// the one midway between two borders is the seam. About the path the ridge is measured to a fraction of a pixel
+/// (stages/geometry/steger.hpp) on the grey values themselves, and its points are taken together, robustly, over as far
+/// as the measurement reaches anyway.
+///
+/// Fails: a scratch along the whole picture is a line like any other, and a joint whose sheets overlap shows one border
+/// and no line.
+std::optional<PhotoLine> find_photo_line(const GreyImage& image);
+
+/// The seam in the plane's frame, mm: a butt joint whose flanks both face the camera. Throws InputError as
+/// point_on_plane() does.
+Seam seam_on_plane(const PhotoLine& line, const CameraModel& camera, const Eigen::Isometry3d& camera_from_plane);
+
+}  // namespace seampath
