@@ -65,9 +65,14 @@ void members(auto& archive, Is<Extraction> auto& v) {
     archive("orientation_reason", orientation_reason)("remarks", remarks);
 }
 
+void members(auto& archive, Is<NodeLine> auto& v) {
+    auto& [station_mm, p, length_mm, max_error_mm] = v;
+    archive("station_mm", station_mm)("p", p)("length_mm", length_mm)("max_error_mm", max_error_mm);
+}
+
 void members(auto& archive, Is<Nodes> auto& v) {
-    auto& [index, max_chord_error_mm] = v;
-    archive("index", index)("max_chord_error_mm", max_chord_error_mm);
+    auto& [index, max_chord_error_mm, line] = v;
+    archive("index", index)("max_chord_error_mm", max_chord_error_mm)("line", line);
 }
 
 void members(auto& archive, Is<CubicBSpline> auto& v) {
@@ -86,11 +91,16 @@ void members(auto& archive, Is<SaddleParameters> auto& v) {
     archive("angle_rad", angle_rad)("offset_mm", offset_mm);
 }
 
+void members(auto& archive, Is<BandSample> auto& v) {
+    auto& [station_mm, half_width_mm] = v;
+    archive("station_mm", station_mm)("half_width_mm", half_width_mm);
+}
+
 void members(auto& archive, Is<SeamModel> auto& v) {
-    auto& [kind, closed, curve, length_mm, flanks, rms_mm, max_mm, degrees_of_freedom, model, reason, saddle] = v;
+    auto& [kind, closed, curve, length_mm, flanks, rms_mm, max_mm, degrees_of_freedom, model, reason, saddle, band] = v;
     archive("kind", kind)("closed", closed)("curve", curve)("length_mm", length_mm)("flanks", flanks);
     archive("residual_rms_mm", rms_mm)("residual_max_mm", max_mm)("degrees_of_freedom", degrees_of_freedom);
-    archive("model", model)("reason", reason)("saddle", saddle);
+    archive("model", model)("reason", reason)("saddle", saddle)("band", band);
 }
 
 void members(auto& archive, Is<DeviationSample> auto& v) {

@@ -143,14 +143,6 @@ std::string histogram(const Deviation& deviation) {
     return figure("", "<b>How often which deviation</b>", svg + svg_end());
 }
 
-std::vector<Eigen::Vector3d> node_positions(const Seam& seam, const Nodes& nodes) {
-    std::vector<Eigen::Vector3d> positions;
-    for (const std::size_t node : nodes.index) {
-        positions.push_back(seam.points[node].p);
-    }
-    return positions;
-}
-
 std::string curvature_plot(const SeamModel& model, const std::vector<Eigen::Vector3d>& nodes) {
     const ArcLength arc(model.curve);
     std::vector<PlotPoint> line, dots;
@@ -170,6 +162,26 @@ std::string curvature_plot(const SeamModel& model, const std::vector<Eigen::Vect
                   nodes.empty() ? "<b>Curvature</b>" : "<b>Curvature</b> and the nodes that carry the shape",
                   svg_axes(axes, nodes.empty() ? "Curvature of the seam" : "Curvature of the seam with its nodes") +
                       svg_line(axes, line, "value") + svg_dots(axes, dots, 3, "node") + svg_end());
+}
+
+/// How far the seam may be from its model in 19 of 20 cases, over the station; empty where the model does not tell.
+std::string band_plot(const SeamModel& model) {
+    if (model.band.empty()) {
+        return "";
+    }
+    std::vector<PlotPoint> low, high;
+    double most = 0;
+    for (const BandSample& sample : model.band) {
+        low.push_back({sample.station_mm, -sample.half_width_mm});
+        high.push_back({sample.station_mm, sample.half_width_mm});
+        most = std::max(most, sample.half_width_mm);
+    }
+    const double reach = padded(most, 1e-4);
+    const PlotAxes axes{kNarrowPlot, kNarrowHeight, 0,           std::max(model.length_mm, 1e-3), -reach,
+                        reach,       "station, mm", "across, mm"};
+    return figure("", "<b>95 % band</b> of the seam about its model",
+                  svg_axes(axes, "Band about the model that holds the seam with 95 %") +
+                      svg_band(axes, low, high, "sigma") + svg_end());
 }
 
 /// One number of the groove's section over the station, with its band of ±1σ; empty when the scan never shows it.
@@ -262,7 +274,7 @@ std::string seam_plots(const PartResult& part, std::size_t seam) {
     }
     return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], model) + section_panel(seam) +
            histogram(part.deviations[seam]) +
-           curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) +
+           curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) + band_plot(model) +
            speed_plot(part, seam) + torch_angle_plot(part, seam) + groove_plots(part.extraction.seams[seam]) +
            "</div>\n";
 }

@@ -1,6 +1,7 @@
 #include "pipeline/report_seams.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -74,6 +75,29 @@ ReportRows model_rows(const SeamModel& model) {
                      kDegreesPerRadian);
         add_estimate(rows, "branch_offset", "Offset of the branch", "mm", model.saddle->offset_mm);
     }
+    return rows;
+}
+
+/// How far the seam may be from its model, and where the model is less smooth than elsewhere.
+ReportRows quality_rows(const SeamModel& model) {
+    ReportRows rows;
+    if (!model.band.empty()) {
+        std::vector<double> half_width;
+        for (const BandSample& sample : model.band) {
+            half_width.push_back(sample.half_width_mm);
+        }
+        rows.push_back(number("band_95_median_mm", "95 % band of the curve, median half width",
+                              quantile(half_width, 0.5), "mm", 4));
+        rows.push_back(
+            number("band_95_max_mm", "95 % band of the curve, largest half width", quantile(half_width, 1), "mm", 4));
+    }
+    std::array<std::size_t, 3> knots{};
+    for (const CurveKnot& knot : knots_of(model.curve)) {
+        ++knots[static_cast<std::size_t>(std::clamp(knot.continuity, 0, 2))];
+    }
+    rows.push_back(count("knots_c2", "Inner knots with continuous curvature", knots[2]));
+    rows.push_back(count("knots_c1", "Inner knots with continuous tangent only", knots[1]));
+    rows.push_back(count("knots_c0", "Corners and other knots with continuous position only", knots[0]));
     return rows;
 }
 
@@ -178,6 +202,16 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
         },
         characteristics(part, i),
         {}};
+    if (part.nodes[i].line) {
+        const double error = part.nodes[i].line->max_error_mm;
+        const auto behind = std::find_if(report.rows.begin(), report.rows.end(),
+                                         [](const ReportRow& row) { return row.name == "node_chord_error_mm"; });
+        report.rows.insert(behind + 1, judged(number("node_spline_error_mm",
+                                                     "Spline through the nodes from the smoothed "
+                                                     "seam, largest",
+                                                     error, "mm", 4),
+                                              error <= part.config.place.spline_tolerance_mm));
+    }
     for (const std::size_t k : worst_samples(deviation, model)) {
         report.places.push_back(place_rows(deviation.samples[k]));
     }
@@ -185,6 +219,10 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
     const auto before = std::find_if(report.rows.begin(), report.rows.end(),
                                      [](const ReportRow& row) { return row.name == "residual_rms_mm"; });
     report.rows.insert(before, model_facts.begin(), model_facts.end());
+    const ReportRows quality = quality_rows(model);
+    const auto behind = std::find_if(report.rows.begin(), report.rows.end(),
+                                     [](const ReportRow& row) { return row.name == "degrees_of_freedom"; });
+    report.rows.insert(behind + 1, quality.begin(), quality.end());
     const ReportRows groove = groove_rows(seam);
     report.rows.insert(report.rows.end(), groove.begin(), groove.end());
     return report;

@@ -106,8 +106,8 @@ ViewSeam view_seam(const PartResult& part, std::size_t i, const ViewScene& scene
         view.samples.push_back(view.samples.front());
         view.samples.back().station_mm = part.models[i].length_mm;
     }
-    for (const std::size_t node : part.nodes[i].index) {
-        view.nodes.emplace_back(seam.points[node].p - scene.centre);
+    for (const Eigen::Vector3d& node : node_positions(seam, part.nodes[i])) {
+        view.nodes.emplace_back(node - scene.centre);
     }
     view.tolerance_mm = deviation.tolerance_mm;
     view.camera = best_camera({&seam, 1}, part.scan, scene);

@@ -47,4 +47,7 @@ struct PartResult {
     bool pass() const;
 };
 
+/// Of a seam's nodes, mm.
+std::vector<Eigen::Vector3d> node_positions(const Seam& seam, const Nodes& nodes);
+
 }  // namespace seampath

@@ -71,8 +71,11 @@ std::string extract_summary(const PartResult& part) {
 }
 
 std::string place_summary(const PartResult& part) {
-    return count(seam_points(part), "seam point") + " -> " + count(node_count(part), "node") + "; chord error " +
-           mm(largest(part.nodes, [](const Nodes& nodes) { return nodes.max_chord_error_mm; }));
+    const bool of_spline = part.config.place.method != PlaceMethod::chord;
+    return count(seam_points(part), "seam point") + " -> " + count(node_count(part), "node") +
+           (of_spline ? "; spline error " : "; chord error ") + mm(largest(part.nodes, [](const Nodes& nodes) {
+               return nodes.line ? nodes.line->max_error_mm : nodes.max_chord_error_mm;
+           }));
 }
 
 std::string fit_summary(const PartResult& part) {

@@ -11,6 +11,7 @@
 #include "pipeline/groove_columns.hpp"
 #include "pipeline/report_text.hpp"
 #include "stages/angle.hpp"
+#include "stages/geometry/bspline.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -54,28 +55,48 @@ Json saddle_json(const SaddleParameters& saddle) {
     return json;
 }
 
+/// How many derivatives are continuous at each inner knot, and how far the seam may be from the curve in 19 of 20
+/// cases.
+void put_quality(Json& json, const SeamModel& model) {
+    json["inner_knots_mm"] = Json::array();
+    json["inner_knots_continuity"] = Json::array();
+    for (const CurveKnot& knot : knots_of(model.curve)) {
+        json["inner_knots_mm"].push_back(knot.u);
+        json["inner_knots_continuity"].push_back(knot.continuity);
+    }
+    json["band_95_stations_mm"] = Json::array();
+    json["band_95_half_width_mm"] = Json::array();
+    for (const BandSample& sample : model.band) {
+        json["band_95_stations_mm"].push_back(sample.station_mm);
+        json["band_95_half_width_mm"].push_back(sample.half_width_mm);
+    }
+}
+
 Json model_json(const SeamModel& model) {
-    return {{"name", model.model},
-            {"reason", model.reason},
-            {"saddle", model.saddle ? saddle_json(*model.saddle) : Json()},
-            {"type", "cubic_b_spline"},
-            {"periodic", model.curve.periodic},
-            {"knots_mm", model.curve.knots},
-            {"control_points_mm", positions_json(model.curve.control)},
-            {"residual_rms_mm", model.residual_rms_mm},
-            {"residual_max_mm", model.residual_max_mm},
-            {"degrees_of_freedom", model.degrees_of_freedom}};
+    Json json{{"name", model.model},
+              {"reason", model.reason},
+              {"saddle", model.saddle ? saddle_json(*model.saddle) : Json()},
+              {"type", "cubic_b_spline"},
+              {"periodic", model.curve.periodic},
+              {"knots_mm", model.curve.knots},
+              {"control_points_mm", positions_json(model.curve.control)},
+              {"residual_rms_mm", model.residual_rms_mm},
+              {"residual_max_mm", model.residual_max_mm},
+              {"degrees_of_freedom", model.degrees_of_freedom}};
+    put_quality(json, model);
+    return json;
 }
 
 Json nodes_json(const Nodes& nodes, const Seam& seam) {
-    Json positions = Json::array();
-    for (const std::size_t i : nodes.index) {
-        positions.push_back(position_json(seam.points.at(i).p));
+    Json json{{"count", nodes.index.size()},
+              {"max_chord_error_mm", nodes.max_chord_error_mm},
+              {"index", nodes.index},
+              {"positions_mm", positions_json(node_positions(seam, nodes))}};
+    if (nodes.line) {
+        json["max_spline_error_mm"] = nodes.line->max_error_mm;
+        json["stations_mm"] = nodes.line->station_mm;
     }
-    return {{"count", nodes.index.size()},
-            {"max_chord_error_mm", nodes.max_chord_error_mm},
-            {"index", nodes.index},
-            {"positions_mm", std::move(positions)}};
+    return json;
 }
 
 Json deviation_json(const Deviation& deviation) {

@@ -117,10 +117,19 @@ struct Seam {
     SeamSurfaces surfaces;
 };
 
+/// Nodes on a smooth line through the seam's points.
+struct NodeLine {
+    std::vector<double> station_mm;  ///< of each node along the line from the first point's foot, ascending
+    std::vector<Eigen::Vector3d> p;  ///< of each node, mm: the foot of its seam point
+    double length_mm = 0;            ///< of the line; once round when closed
+    double max_error_mm = 0;         ///< largest distance of the cubic spline through the nodes from the line
+};
+
 /// The few points that carry the shape of a seam.
 struct Nodes {
     std::vector<std::size_t> index;  ///< ascending indices into Seam::points; open seams keep first and last
     double max_chord_error_mm = 0;   ///< largest distance of any seam point from the chord of its interval
+    std::optional<NodeLine> line;    ///< without: the nodes are the seam points themselves
 };
 
 /// Cubic B-spline in space. Open: clamped knots, `control.size() + 4` of them. Periodic: `control.size() + 1` knots
@@ -149,6 +158,13 @@ struct SaddleParameters {
     std::optional<Measured> offset_mm;         ///< between the axes, or of a sphere's centre from the branch's axis
 };
 
+/// Where the seam is for sure but for one time in twenty: within this distance, across travel, of the model at a
+/// station.
+struct BandSample {
+    double station_mm = 0;
+    double half_width_mm = 0;
+};
+
 /// The curve that a seam is, and how well it follows the extracted points.
 struct SeamModel {
     JointKind kind = JointKind::fillet;
@@ -163,6 +179,7 @@ struct SeamModel {
     std::string model;              ///< by name, e.g. "spline", "saddle"
     std::string reason;             ///< why that one, one sentence
     std::optional<SaddleParameters> saddle;
+    std::vector<BandSample> band;  ///< at ascending stations; empty where the model does not tell
 };
 
 /// Where one sample of the model lies relative to the scan's two flank surfaces.

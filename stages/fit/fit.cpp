@@ -9,9 +9,9 @@
 #include "stages/error.hpp"
 #include "stages/fit/interpolated.hpp"
 #include "stages/fit/saddle_model.hpp"
-#include "stages/fit/smoothed.hpp"
 #include "stages/geometry/bspline.hpp"
-#include "stages/geometry/robust.hpp"
+#include "stages/geometry/corners.hpp"
+#include "stages/geometry/smoothed.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -37,6 +37,17 @@ Normals averaged_normals(const Seam& seam) {
     return normals;
 }
 
+// What 19 of 20 distances from the model stay below, in the plane across it.
+std::vector<BandSample> band_of(const std::vector<CurveSigma>& sigma, const SeamModel& model) {
+    const double factor = std::sqrt(-2 * std::log(0.05));  // of a direction's sigma (Rayleigh)
+    const ArcLength arc(model.curve);
+    std::vector<BandSample> band;
+    for (const auto& [u, sigma_mm] : sigma) {
+        band.push_back({arc.station(u), factor * sigma_mm});
+    }
+    return band;
+}
+
 std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model, const std::vector<double>& u,
                                        const Normals& normals) {
     const ArcLength arc(model.curve);
@@ -48,22 +59,6 @@ std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model,
     std::stable_sort(samples.begin(), samples.end(),
                      [](const FlankSample& a, const FlankSample& b) { return a.station_mm < b.station_mm; });
     return samples;
-}
-
-// Weights 1/sigma^2. A sigma far below the usual would let one point hold the curve.
-CurvePoints points_of(const Seam& seam, const Eigen::Vector3d& middle) {
-    std::vector<double> sigma;
-    for (const SeamPoint& point : seam.points) {
-        sigma.push_back(point.sigma_mm);
-    }
-    const double least = std::max(1e-6, 0.1 * quantile(sigma, 0.5));
-    CurvePoints points;
-    for (const SeamPoint& point : seam.points) {
-        points.p.emplace_back(point.p - middle);
-        points.weight.push_back(std::pow(std::max(point.sigma_mm, least), -2));
-    }
-    points.u.assign(points.p.size(), 0);
-    return points;
 }
 
 // An option that changes nothing would let its user believe that it did.
@@ -107,12 +102,18 @@ Normals fit_curve(const Seam& seam, const Nodes& nodes, const FitOptions& option
     model.model = name(options.model);
     model.reason = "fit.model asks for it";
     if (interpolates(options.model)) {
-        const FittedCurve line = interpolate_nodes(points, nodes, seam.closed, options);
+        Nodes about_middle = nodes;
+        if (about_middle.line) {
+            for (Eigen::Vector3d& p : about_middle.line->p) {
+                p -= middle;
+            }
+        }
+        const FittedCurve line = interpolate_nodes(points, about_middle, seam.closed, options);
         model.curve = line.curve;
         model.degrees_of_freedom = 3 * line.freedom;
         return averaged_normals(seam);
     }
-    const FittedCurve smooth = smooth_points(points, seam.closed);
+    const FittedCurve smooth = smooth_pieces(points, seam.closed);
     if (options.model != FitModel::spline) {
         const bool asked = options.model == FitModel::saddle;
         std::variant<SaddleModel, NoSaddle> result =
@@ -141,6 +142,7 @@ Normals fit_curve(const Seam& seam, const Nodes& nodes, const FitOptions& option
     }
     model.curve = smooth.curve;
     model.degrees_of_freedom = 3 * smooth.freedom;
+    model.band = band_of(smooth.sigma, model);
     return averaged_normals(seam);
 }
 
@@ -167,12 +169,8 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
         throw InputError("fit: the seam has " + std::to_string(seam.points.size()) +
                          " points; at least 6 are needed; lower extract.station_mm");
     }
-    // Coordinates about the middle: rounding then hangs on the seam's size, not on where it lies.
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const SeamPoint& point : seam.points) {
-        middle += point.p / static_cast<double>(seam.points.size());
-    }
-    CurvePoints points = points_of(seam, middle);
+    const Eigen::Vector3d middle = middle_of(seam);
+    CurvePoints points = points_about(seam, middle);
     SeamModel model;
     model.kind = seam.kind;
     model.closed = seam.closed;

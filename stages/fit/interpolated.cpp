@@ -248,7 +248,7 @@ FittedCurve interpolate_nodes(CurvePoints& points, const Nodes& nodes, bool clos
     if (sets_nodes(options.model)) {
         table = equal_nodes(points, s, table, closed, options);
     }
-    FittedCurve fitted{as_bspline(pieces_of(table, closed, options), closed), static_cast<double>(table.t.size())};
+    FittedCurve fitted{as_bspline(pieces_of(table, closed, options), closed), static_cast<double>(table.t.size()), {}};
     project(points, s, table, fitted.curve);
     return fitted;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "stages/fit/fit.hpp"
-#include "stages/fit/pspline.hpp"
+#include "stages/geometry/pspline.hpp"
 
 namespace seampath {
 

@@ -105,6 +105,11 @@ NodeTable placed_nodes(const CurvePoints& points, const Values& s, const Nodes& 
     }
     table.t = table.s;
     table.period = closed ? s.back() : 0;
+    if (nodes.line) {
+        table.p = nodes.line->p;
+        table.t = nodes.line->station_mm;
+        table.period = closed ? nodes.line->length_mm : 0;
+    }
     if (o.axis != FitAxis::length) {
         for (std::size_t k = 0; k < table.t.size(); ++k) {
             table.t[k] = along(table.p[k], o, points.p.front(), points.p.back());

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "stages/fit/fit.hpp"
-#include "stages/fit/pspline.hpp"
 #include "stages/geometry/interpolate.hpp"
+#include "stages/geometry/pspline.hpp"
 
 /// Private to the fit stage: what the interpolating models interpolate.
 namespace seampath {
@@ -26,7 +26,8 @@ struct NodeTable {
 /// Arc length along the polygon of the points, one a point; for a closed seam one more, where it is back.
 std::vector<double> lengths(const std::vector<Eigen::Vector3d>& p, bool closed);
 
-/// The nodes as `place` chose them. `s` is lengths(points.p). Throws InputError where t would not ascend.
+/// The nodes as `place` chose them, in the frame of the points, over arc length along the line they were placed on: the
+/// points' polygon where the nodes are points. `s` is lengths(points.p). Throws InputError where t would not ascend.
 NodeTable placed_nodes(const CurvePoints& points, const std::vector<double>& s, const Nodes& nodes, bool closed,
                        const FitOptions& options);
 

@@ -9,9 +9,9 @@
 
 #include "stages/angle.hpp"
 #include "stages/fit/chi_squared.hpp"
-#include "stages/fit/smoothing.hpp"
 #include "stages/geometry/flank_surface.hpp"
 #include "stages/geometry/sampled_spline.hpp"
+#include "stages/geometry/smoothing.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {

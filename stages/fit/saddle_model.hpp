@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "stages/fit/pspline.hpp"
 #include "stages/fit/saddle_fit.hpp"
+#include "stages/geometry/pspline.hpp"
 
 namespace seampath {
 

@@ -19,6 +19,26 @@ double wrap(double u, double first, double period) {
     return std::clamp(u - turns * period, first, first + period);
 }
 
+// The last of the spans `first` to `last` that begins at u or before. Knots are mostly about as dense everywhere:
+// looked for where it then is, and only else by halves.
+std::ptrdiff_t span_at(const std::vector<double>& knots, std::ptrdiff_t first, std::ptrdiff_t last, double u) {
+    constexpr int kSteps = 6;
+    const double share = (u - knots[first]) / (knots[last + 1] - knots[first]);
+    std::ptrdiff_t span = std::clamp<std::ptrdiff_t>(
+        first + static_cast<std::ptrdiff_t>(share * static_cast<double>(last + 1 - first)), first, last);
+    for (int step = 0; step < kSteps; ++step) {
+        if (span < last && knots[span + 1] <= u) {
+            ++span;
+        } else if (span > first && knots[span] > u) {
+            --span;
+        } else {
+            return span;
+        }
+    }
+    const auto begin = knots.begin() + first, end = knots.begin() + last + 1;
+    return std::clamp<std::ptrdiff_t>(std::upper_bound(begin, end, u) - knots.begin() - 1, first, last);
+}
+
 double speed_integral(const CubicBSpline& curve, double a, double b) {
     return gauss_legendre([&](double u) { return derivative(curve, u).norm(); }, a, b);
 }
@@ -46,8 +66,7 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
         const auto n = static_cast<std::ptrdiff_t>(controls);
         const double period = knots.back() - knots.front();
         u = wrap(u, knots.front(), period);
-        const auto above = std::upper_bound(knots.begin(), knots.end(), u) - knots.begin();
-        const std::ptrdiff_t span = std::clamp<std::ptrdiff_t>(above - 1, 0, n - 1);
+        const std::ptrdiff_t span = span_at(knots, 0, n - 1, u);
         for (std::ptrdiff_t k = 0; k < 8; ++k) {
             std::ptrdiff_t j = span + k - 3;
             double turns = 0;
@@ -60,12 +79,11 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
             t[k] = knots[j] + turns * period;
         }
         for (std::ptrdiff_t k = 0; k < 4; ++k) {
-            basis.control[k] = static_cast<std::size_t>((span + k) % n);
+            basis.control[k] = static_cast<std::size_t>(span + k < n ? span + k : (span + k) % n);
         }
     } else {
         u = std::clamp(u, knots[3], knots[controls]);
-        const auto above = std::upper_bound(knots.begin(), knots.end(), u) - knots.begin();
-        const std::ptrdiff_t span = std::clamp<std::ptrdiff_t>(above - 1, 3, static_cast<std::ptrdiff_t>(controls) - 1);
+        const std::ptrdiff_t span = span_at(knots, 3, static_cast<std::ptrdiff_t>(controls) - 1, u);
         for (std::ptrdiff_t k = 0; k < 8; ++k) {
             t[k] = knots[span + k - 3];
         }
@@ -73,44 +91,30 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
             basis.control[k] = static_cast<std::size_t>(span - 3 + k);
         }
     }
-    // Cox-de Boor, degree by degree; N[d][k] is the basis function of degree d that starts at knot 3 - d + k.
-    std::array<std::array<double, 4>, 4> N{};
-    N[0][0] = 1;
+    // Cox-de Boor, degree by degree: each function of degree d gives shares to two of degree d + 1. All of them are not
+    // zero on [t3, t4], so that no difference of knots below is.
+    std::array<double, 3> slope, bend;  // differences of the functions of degree 2 and 1, each over its knots
+    std::array<double, 4> N{1, 0, 0, 0};
     for (int d = 1; d <= 3; ++d) {
-        for (int k = 0; k <= d; ++k) {
-            const int i = 3 - d + k;
-            double sum = 0;
-            if (k > 0 && t[i + d] > t[i]) {
-                sum += (u - t[i]) / (t[i + d] - t[i]) * N[d - 1][k - 1];
+        double carried = 0;
+        for (int k = 0; k < d; ++k) {
+            const double begin = t[4 - d + k], end = t[4 + k], share = N[k] / (end - begin);
+            N[k] = carried + (end - u) * share;
+            carried = (u - begin) * share;
+            (d == 3 ? slope : bend)[k] = share;
+        }
+        N[d] = carried;
+        if (d == 2) {
+            // The functions of degree 2 have the slopes 2 (share_{k-1} - share_k); their own differences follow.
+            const std::array<double, 3> d1{-2 * bend[0], 2 * (bend[0] - bend[1]), 2 * bend[1]};
+            for (int k = 0; k < 3; ++k) {
+                bend[k] = d1[k] / (t[4 + k] - t[1 + k]);
             }
-            if (k < d && t[i + d + 1] > t[i + 1]) {
-                sum += (t[i + d + 1] - u) / (t[i + d + 1] - t[i + 1]) * N[d - 1][k];
-            }
-            N[d][k] = sum;
+            basis.d2 = {-3 * bend[0], 3 * (bend[0] - bend[1]), 3 * (bend[1] - bend[2]), 3 * bend[2]};
         }
     }
-    // Derivative of a basis function of degree d: d (N_{i}/(t_{i+d}-t_i) - N_{i+1}/(t_{i+d+1}-t_{i+1})) of degree d
-    // - 1.
-    const auto differentiate = [&t](int d, int k, const auto& lower, int lower_size) {
-        const int i = 3 - d + k;
-        double sum = 0;
-        if (k > 0 && t[i + d] > t[i]) {
-            sum += lower[k - 1] / (t[i + d] - t[i]);
-        }
-        if (k < lower_size && t[i + d + 1] > t[i + 1]) {
-            sum -= lower[k] / (t[i + d + 1] - t[i + 1]);
-        }
-        return d * sum;
-    };
-    std::array<double, 4> quadratic_d1{};
-    for (int k = 0; k < 3; ++k) {
-        quadratic_d1[k] = differentiate(2, k, N[1], 2);
-    }
-    for (int k = 0; k < 4; ++k) {
-        basis.value[k] = N[3][k];
-        basis.d1[k] = differentiate(3, k, N[2], 3);
-        basis.d2[k] = differentiate(3, k, quadratic_d1, 3);
-    }
+    basis.value = N;
+    basis.d1 = {-3 * slope[0], 3 * (slope[0] - slope[1]), 3 * (slope[1] - slope[2]), 3 * slope[2]};
     return basis;
 }
 
@@ -119,6 +123,19 @@ double first_parameter(const CubicBSpline& curve) {
 }
 double last_parameter(const CubicBSpline& curve) {
     return curve.periodic ? curve.knots.back() : curve.knots[curve.control.size()];
+}
+
+std::vector<CurveKnot> knots_of(const CubicBSpline& curve) {
+    std::vector<CurveKnot> knots;
+    const double first = first_parameter(curve), last = last_parameter(curve);
+    for (const double u : curve.knots) {
+        if (!knots.empty() && knots.back().u == u) {
+            --knots.back().continuity;
+        } else if (curve.periodic ? u < last : u > first && u < last) {
+            knots.push_back({u, 2});
+        }
+    }
+    return knots;
 }
 
 Eigen::Vector3d position(const CubicBSpline& curve, double u) {
@@ -195,10 +212,15 @@ double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, do
         const Eigen::Vector3d d1 = combine(curve, basis, basis.d1);
         const double slope = r.dot(d1);
         double bend = d1.squaredNorm() + r.dot(combine(curve, basis, basis.d2));
+        double enough = 1e-7;  // of the range: Newton's next step would be the square of it
         if (bend <= 0.1 * d1.squaredNorm()) {
             bend = d1.squaredNorm();  // near the centre of curvature Newton's step would leave: Gauss-Newton's does not
+            enough = 1e-13;
         }
         double step = -slope / bend;
+        if (std::abs(step) <= 1e-13 * (last - first)) {
+            break;
+        }
         bool moved = false;
         for (int halving = 0; halving < 12 && !moved; ++halving, step *= 0.5) {
             double next = u + step;
@@ -208,7 +230,7 @@ double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, do
             const CubicBasis trial = basis_at(curve, next);
             const Eigen::Vector3d off = combine(curve, trial, trial.value) - p;
             if (off.squaredNorm() < r.squaredNorm()) {
-                moved = std::abs(next - u) > 1e-13 * (last - first);
+                moved = std::abs(next - u) > enough * (last - first);
                 basis = trial;
                 r = off;
                 u = next;

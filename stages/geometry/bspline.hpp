@@ -28,6 +28,16 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
 double first_parameter(const CubicBSpline& curve);
 double last_parameter(const CubicBSpline& curve);
 
+/// A place where two polynomials meet, and how many derivatives they share there: 2, 1, 0, or -1 where even the
+/// position jumps; from the multiplicity of the knot.
+struct CurveKnot {
+    double u = 0;
+    int continuity = 2;
+};
+
+/// The inner knots of a curve, ascending; of a periodic one also that of its beginning.
+std::vector<CurveKnot> knots_of(const CubicBSpline& curve);
+
 Eigen::Vector3d position(const CubicBSpline& curve, double u);
 Eigen::Vector3d derivative(const CubicBSpline& curve, double u);
 Eigen::Vector3d second_derivative(const CubicBSpline& curve, double u);

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "stages/error.hpp"
+#include "stages/place/spline_nodes.hpp"
+#include "stages/text.hpp"
 
 namespace seampath {
 namespace {
@@ -64,49 +66,97 @@ Path fewest_chords(const std::vector<Eigen::Vector3d>& p, std::size_t first, std
     return path;
 }
 
+/// The nodes of the fewest chords.
+std::vector<std::size_t> chord_nodes(const std::vector<Eigen::Vector3d>& p, bool closed, const PlaceOptions& options) {
+    const std::size_t n = p.size();
+    if (!closed) {
+        return fewest_chords(p, 0, n - 1, options).index;
+    }
+    // One node of the best ring lies within the first chord of any ring: try all places there as the start.
+    Path best;
+    const Path any = fewest_chords(p, 0, n, options);
+    for (std::size_t start = 0; start < any.index[1]; ++start) {
+        Path ring = fewest_chords(p, start, start + n, options);
+        if (ring.cost < best.cost) {
+            best = std::move(ring);
+        }
+    }
+    best.index.pop_back();
+    for (std::size_t& i : best.index) {
+        i %= n;
+    }
+    std::sort(best.index.begin(), best.index.end());
+    return best.index;
+}
+
+/// The nodes of a spline.
+void add_spline_nodes(const Seam& seam, const PlaceOptions& options, Nodes& nodes) {
+    const SmoothLine line = smooth_line(seam);
+    if (line.closed && 8 * options.min_spacing_mm > line.length) {
+        throw InputError("place: place.min_spacing_mm is " + shortest(options.min_spacing_mm) + "; a closed seam of " +
+                         fixed(line.length, 1) + " mm needs room for 8 nodes; lower place.min_spacing_mm");
+    }
+    const Chosen chosen =
+        options.method == PlaceMethod::spline ? nodes_by_error(line, options) : nodes_at_equal_steps(line, options);
+    nodes.line = NodeLine{{}, {}, line.length, chosen.worst};
+    for (const std::size_t foot : chosen.foot) {
+        nodes.index.push_back(line.index[foot]);
+        nodes.line->station_mm.push_back(line.s[foot]);
+        nodes.line->p.push_back(line.p[foot]);
+    }
+}
+
+void check_spacing(const PlaceOptions& o) {
+    if (o.min_spacing_mm > 0 && o.method == PlaceMethod::chord) {
+        throw InputError("place: place.min_spacing_mm is " + shortest(o.min_spacing_mm) +
+                         " and place.method is chord, whose chords are as short as their tolerance asks for; set "
+                         "place.min_spacing_mm to 0 or place.method to spline or uniform");
+    }
+    if (o.min_spacing_mm > o.max_spacing_mm) {
+        throw InputError("place: place.min_spacing_mm is " + shortest(o.min_spacing_mm) +
+                         ", above place.max_spacing_mm, " + shortest(o.max_spacing_mm) +
+                         "; a range was needed; lower the one or raise the other");
+    }
+}
+
 }  // namespace
 
 Fields describe(PlaceOptions& o) {
-    return {{"chord_tolerance_mm", &o.chord_tolerance_mm,
-             "largest distance of the seam from the straight line between two nodes", above(0)},
-            {"max_spacing_mm", &o.max_spacing_mm, "largest distance between two nodes along the seam", above(0)}};
+    return {
+        {"method", choice(o.method, kPlaceMethodNames),
+         "nodes of straight moves (chord), of a cubic spline, or of one at equal steps (uniform)"},
+        {"chord_tolerance_mm", &o.chord_tolerance_mm,
+         "largest distance of the seam from the straight line between two nodes, for chord", above(0)},
+        {"spline_tolerance_mm", &o.spline_tolerance_mm,
+         "largest distance of the smoothed seam from the spline through the nodes, for spline and uniform", above(0)},
+        {"min_spacing_mm", &o.min_spacing_mm,
+         "least distance between two nodes along the seam, whatever the error, for spline and uniform", at_least(0)},
+        {"max_spacing_mm", &o.max_spacing_mm, "largest distance between two nodes along the seam", above(0)}};
 }
 
 Nodes place(const Seam& seam, const PlaceOptions& options) {
+    check_spacing(options);
     const std::size_t n = seam.points.size();
-    if (n < 4) {
-        throw InputError("place: the seam has " + std::to_string(n) +
-                         " points; at least 4 are needed; lower extract.station_mm");
+    const std::size_t least = options.method == PlaceMethod::chord ? 4 : 6;
+    if (n < least) {
+        throw InputError("place: the seam has " + std::to_string(n) + " points; at least " + std::to_string(least) +
+                         " are needed; lower extract.station_mm");
     }
     std::vector<Eigen::Vector3d> p;
     for (const SeamPoint& point : seam.points) {
         p.push_back(point.p);
     }
-    Path best;
-    if (!seam.closed) {
-        best = fewest_chords(p, 0, n - 1, options);
-    } else {
-        // One node of the best ring lies within the first chord of any ring: try all places there as the start.
-        const Path any = fewest_chords(p, 0, n, options);
-        for (std::size_t start = 0; start < any.index[1]; ++start) {
-            Path ring = fewest_chords(p, start, start + n, options);
-            if (ring.cost < best.cost) {
-                best = std::move(ring);
-            }
-        }
-        best.index.pop_back();
-    }
     Nodes nodes;
-    nodes.index = best.index;
+    if (options.method == PlaceMethod::chord) {
+        nodes.index = chord_nodes(p, seam.closed, options);
+    } else {
+        add_spline_nodes(seam, options, nodes);
+    }
     const std::size_t count = nodes.index.size();
     for (std::size_t k = 0; k + 1 < count + (seam.closed ? 1 : 0); ++k) {
         const std::size_t to = k + 1 < count ? nodes.index[k + 1] : nodes.index[0] + n;
         nodes.max_chord_error_mm = std::max(nodes.max_chord_error_mm, chord_error(p, nodes.index[k], to));
     }
-    for (std::size_t& i : nodes.index) {
-        i %= n;
-    }
-    std::sort(nodes.index.begin(), nodes.index.end());
     return nodes;
 }
 

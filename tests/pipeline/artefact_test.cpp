@@ -86,6 +86,7 @@ SeamModel random_model(Numbers& n) {
     model.degrees_of_freedom = n.any();
     model.model = "saddle";
     model.reason = "both pipes are \"round\"";
+    model.band = {{n.any(), n.any()}};
     if (n.flip()) {
         const Measured estimate{n.any(), n.any()};
         model.saddle = {static_cast<SurfaceShape>(n.below(4)), estimate, {}, Measured{n.any(), n.any()}, estimate};
@@ -137,7 +138,8 @@ TEST(Codec, EveryStageResultReadsBackExactly) {
         SCOPED_TRACE(seed);
         Numbers n(seed);
         expect_round_trip(random_extraction(n));
-        expect_round_trip(std::vector<Nodes>{{{0, n.below(1u << 31), 7}, n.any()}, {}});
+        expect_round_trip(std::vector<Nodes>{{{0, n.below(1u << 31), 7}, n.any(), {}},
+                                             {{1}, n.any(), NodeLine{{n.any()}, {n.vector()}, n.any(), n.any()}}});
         expect_round_trip(std::vector<SeamModel>{random_model(n), random_model(n)});
         expect_round_trip(std::vector<Deviation>{random_deviation(n)});
         expect_round_trip(random_plan(n));

@@ -1,4 +1,4 @@
-#include "stages/fit/banded.hpp"
+#include "stages/geometry/banded.hpp"
 
 #include <algorithm>
 
@@ -50,7 +50,7 @@ double BandedMatrix::trace_with(const BandedMatrix& other) const {
 }
 
 bool BandedMatrix::factorise() {
-    constexpr double kRounding = 1e-15;
+    constexpr double kPivotRounding = 1e-15;
     for (std::size_t i = 0; i < n_; ++i) {
         const std::size_t first = first_in_row(i);
         const double before = at(i, i);
@@ -69,7 +69,7 @@ bool BandedMatrix::factorise() {
             pivot -= scaled * row[j - first];
             row[j - first] = scaled;
         }
-        if (!(pivot > kRounding * before)) {
+        if (!(pivot > kPivotRounding * before)) {
             return false;
         }
         at(i, i) = pivot;

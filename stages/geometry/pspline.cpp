@@ -1,4 +1,4 @@
-#include "stages/fit/pspline.hpp"
+#include "stages/geometry/pspline.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 // Of the penalty's mean diagonal entry against that of the points: below, a span without points would float; above, too
 // few digits of the points are left.
-constexpr double kLeast = 1e-9, kMost = 1e8;
+constexpr double kLeastPenalty = 1e-9, kMostPenalty = 1e8;
 
 std::size_t controls_of(std::size_t breaks, bool periodic) {
     return periodic ? breaks - 1 : breaks + 2;
@@ -69,9 +69,15 @@ void PenalisedSpline::take(const CurvePoints& points) {
     weight_ = points.weight;
     normal_ = BandedMatrix(n, curve_.periodic);
     right_.assign(n, Eigen::RowVector3d::Zero());
-    basis_.resize(points.p.size());
+    if (u_ != points.u) {
+        u_ = points.u;
+        basis_.clear();
+        for (const double u : u_) {
+            basis_.push_back(cubic_basis(curve_.knots, n, curve_.periodic, u));
+        }
+    }
     for (std::size_t i = 0; i < points.p.size(); ++i) {
-        const CubicBasis& basis = basis_[i] = cubic_basis(curve_.knots, n, curve_.periodic, points.u[i]);
+        const CubicBasis& basis = basis_[i];
         normal_.add_square(basis.control, basis.value, weight_[i]);
         for (int r = 0; r < 4; ++r) {
             right_[basis.control[r]] += weight_[i] * basis.value[r] * points.p[i].transpose();
@@ -89,7 +95,7 @@ void PenalisedSpline::solve(std::vector<double>& lambda) {
             square += d * d;
         }
         const double unit = diagonal / (square * span.width);
-        lambda[k] = std::clamp(lambda[k], kLeast * unit, kMost * unit);
+        lambda[k] = std::clamp(lambda[k], kLeastPenalty * unit, kMostPenalty * unit);
         A.add_square(span.control, span.third, lambda[k] * span.width);
     }
     ensure(A.factorise(), "the normal matrix of a penalised spline is positive definite");
@@ -110,6 +116,11 @@ Eigen::Vector3d PenalisedSpline::at_point(std::size_t point) const {
 
 double PenalisedSpline::leverage(std::size_t point) const {
     return weight_[point] * inverse_.square(basis_[point].control, basis_[point].value);
+}
+
+double PenalisedSpline::variance(double u) const {
+    const CubicBasis basis = cubic_basis(curve_.knots, curve_.control.size(), curve_.periodic, u);
+    return inverse_.square(basis.control, basis.value);
 }
 
 double PenalisedSpline::roughness(std::size_t k) const {

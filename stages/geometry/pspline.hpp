@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "stages/fit/banded.hpp"
+#include "stages/geometry/banded.hpp"
 #include "stages/geometry/bspline.hpp"
 
 namespace seampath {
@@ -15,10 +15,17 @@ struct CurvePoints {
     std::vector<double> weight;
 };
 
+/// How well a curve is known at one parameter.
+struct CurveSigma {
+    double u = 0;
+    double sigma_mm = 0;  ///< 1-sigma along each of the two directions across the curve
+};
+
 /// A curve through the points, and how many coefficients of one coordinate the points decide.
 struct FittedCurve {
     CubicBSpline curve;
     double freedom = 0;
+    std::vector<CurveSigma> sigma;  ///< ascending; empty where it is not known
 };
 
 /// A break at every point, but for those that crowd; `end` is that of the curve.
@@ -47,7 +54,10 @@ public:
     Eigen::Vector3d at_point(std::size_t point) const;               ///< of the curve, at the point's parameter
     double freedom() const { return inverse_.trace_with(normal_); }  ///< trace of the hat matrix
     double leverage(std::size_t point) const;                        ///< diagonal of the hat matrix, 0..1
-    double roughness(std::size_t span) const;                        ///< h |c'''|^2, 1/mm^3
+    /// Variance of one coordinate at u when the points have 1 / w_i: that of a curve whose third derivative is as
+    /// random as the penalty has it, given the points (Wahba 1983). It holds what noise and stiffness do.
+    double variance(double u) const;
+    double roughness(std::size_t span) const;  ///< h |c'''|^2, 1/mm^3
     double freedom(std::size_t span,
                    double lambda) const;  ///< 0..1: share of c''' on the span that the points decide, not the penalty
 
@@ -60,7 +70,8 @@ private:
     std::vector<double> breaks_;
     CubicBSpline curve_;
     std::vector<Span> third_;
-    std::vector<CubicBasis> basis_;  ///< of the points
+    std::vector<double> u_;          ///< of the points
+    std::vector<CubicBasis> basis_;  ///< there
     std::vector<double> weight_;
     BandedMatrix normal_, inverse_;
     std::vector<Eigen::RowVector3d> right_;

@@ -1,19 +1,22 @@
-#include "stages/fit/smoothed.hpp"
+#include "stages/geometry/smoothed.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "stages/error.hpp"
-#include "stages/fit/outliers.hpp"
-#include "stages/fit/smoothing.hpp"
 #include "stages/geometry/bspline.hpp"
+#include "stages/geometry/outliers.hpp"
+#include "stages/geometry/robust.hpp"
+#include "stages/geometry/smoothing.hpp"
 
 namespace seampath {
 namespace {
 
-constexpr int kRounds = 4;  // a fifth moves the curve by less than a hundredth of its error
+constexpr int kFootRounds = 4;  // a fifth moves the curve by less than a hundredth of its error
 
 // Parameters by chord length. No chord counts for more than those that span it, so that a point off to a side makes no
 // detour. Returns the parameter of the end: where a closed curve is back at its first point.
@@ -115,7 +118,71 @@ void choose_smoothing(PenalisedSpline& spline, const CurvePoints& points, Smooth
     set_level(spline, points, s);
 }
 
+// What of the stated variance the points do not show: neighbours that share an error agree with each other, and what is
+// left over of them tells nothing of it. Within chance nothing is missing.
+double unseen_share(double seen, double freedom_left) {
+    constexpr double kChance = 4.3;  // three sigma of a median's square, over the root of the number
+    return seen < 1 - kChance / std::sqrt(std::max(freedom_left, 1.0)) ? 1 - seen : 0;
+}
+
+// At the knots and half way between them.
+std::vector<CurveSigma> sigma_along(const PenalisedSpline& spline, const CurvePoints& points,
+                                    const std::vector<double>& given, const Smoothing& s) {
+    std::vector<std::pair<double, double>> stated;  // parameter and variance of the points that count
+    std::vector<double> off;
+    for (std::size_t i = 0; i < points.p.size(); ++i) {
+        if (points.weight[i] > 0) {
+            stated.emplace_back(points.u[i], 1 / given[i]);
+            off.push_back((spline.at_point(i) - points.p[i]).norm() * std::sqrt(given[i]));
+        }
+    }
+    std::sort(stated.begin(), stated.end());
+    // Of distances in the plane the median's square is ln 2 of the mean square, and outliers don't touch it.
+    const auto used = static_cast<double>(off.size());
+    const double left = std::max(used - s.freedom, 1e-3 * used);
+    const double seen = std::pow(quantile(off, 0.5), 2) / std::numbers::ln2 * used / left;
+    const double unseen = unseen_share(seen, left);
+    const std::vector<double>& breaks = spline.breaks();
+    std::vector<CurveSigma> sigma;
+    const auto add = [&](double u) {
+        const auto next = std::lower_bound(stated.begin(), std::prev(stated.end()), std::pair(u, 0.0));
+        // Distances are of two directions: each has half of the variance.
+        sigma.push_back({u, std::sqrt(0.5 * (seen * spline.variance(u) + unseen * next->second))});
+    };
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+        add(breaks[k]);
+        add(0.5 * (breaks[k] + breaks[k + 1]));
+    }
+    if (!spline.curve().periodic) {
+        add(breaks.back());
+    }
+    return sigma;
+}
+
 }  // namespace
+
+Eigen::Vector3d middle_of(const Seam& seam) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const SeamPoint& point : seam.points) {
+        middle += point.p / static_cast<double>(seam.points.size());
+    }
+    return middle;
+}
+
+CurvePoints points_about(const Seam& seam, const Eigen::Vector3d& middle) {
+    std::vector<double> sigma;
+    for (const SeamPoint& point : seam.points) {
+        sigma.push_back(point.sigma_mm);
+    }
+    const double least = std::max(1e-6, 0.1 * quantile(sigma, 0.5));  // one far below the usual would hold the curve
+    CurvePoints points;
+    for (const SeamPoint& point : seam.points) {
+        points.p.emplace_back(point.p - middle);
+        points.weight.push_back(std::pow(std::max(point.sigma_mm, least), -2));
+    }
+    points.u.assign(points.p.size(), 0);
+    return points;
+}
 
 FittedCurve smooth_points(CurvePoints& points, bool closed) {
     double end = set_parameters(points, points.p, closed);
@@ -133,20 +200,23 @@ FittedCurve smooth_points(CurvePoints& points, bool closed) {
     Smoothing s;
     s.lambda = loose_lambda(points, breaks);
     CubicBSpline curve;
+    std::vector<CurveSigma> sigma;
     bool uneven = false;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kFootRounds; ++round) {
         PenalisedSpline spline(breaks, closed);
         spline.take(points);
         choose_smoothing(spline, points, s, round, uneven);
         project(points, spline.curve());
         weigh(points, given, loose.bulge, spline.curve());
         curve = spline.curve();
-        if (round + 1 < kRounds) {
+        if (round + 1 == kFootRounds) {
+            sigma = sigma_along(spline, points, given, s);
+        } else {
             thin(breaks, s, spline);
             measure_along(points, breaks, curve);
         }
     }
-    return {std::move(curve), s.freedom};
+    return {std::move(curve), s.freedom, std::move(sigma)};
 }
 
 }  // namespace seampath

@@ -1,4 +1,4 @@
-#include "stages/fit/smoothing.hpp"
+#include "stages/geometry/smoothing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 constexpr double kOverlap = 16;
 
 // Of exact points: a millionth of the stated sigma.
-constexpr double kLeastNoise = 1e-12;
+constexpr double kExactNoise = 1e-12;
 
 // Freedom is counted dearer than in theory: against following noise by chance (Kim & Gu 2004 have 1.4 in GCV).
 constexpr double kCaution = 1.4;
@@ -32,7 +32,7 @@ void solve(PenalisedSpline& spline, const CurvePoints& points, Smoothing& s) {
         }
     }
     const double left = s.misfit / std::max(used - s.freedom, 1e-3 * used);  // exact points may use up all freedom
-    s.noise = std::max({kLeastNoise, left, std::min(1.0, kOverlap * left)});
+    s.noise = std::max({kExactNoise, left, std::min(1.0, kOverlap * left)});
 }
 
 // Spans, before the first and beyond the last in a ring.
@@ -71,11 +71,11 @@ std::vector<Window> windows_of(const PenalisedSpline& spline, const Smoothing& s
 }  // namespace
 
 void smooth_evenly(PenalisedSpline& spline, const CurvePoints& points, Smoothing& s) {
-    constexpr int kMostRounds = 30;
+    constexpr int kMostSteps = 30;
     constexpr double kNear = 0.1;                // of log lambda: a change of freedom by 2 %
     constexpr double kMostStep = 8;              // of log lambda
     double before = 0, slope = -0.25, step = 0;  // secant method for log lambda; the first slope is typical
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMostSteps; ++round) {
         solve(spline, points, s);
         double rough = 0, free = 0, log_lambda = 0;
         for (std::size_t k = 0; k < spline.spans(); ++k) {
@@ -97,13 +97,13 @@ void smooth_evenly(PenalisedSpline& spline, const CurvePoints& points, Smoothing
 }
 
 void smooth_locally(PenalisedSpline& spline, const CurvePoints& points, Smoothing& s) {
-    constexpr int kRounds = 10;
+    constexpr int kLocalRounds = 10;
     constexpr double kMostChange = 1e3;
     solve(spline, points, s);
     const std::vector<Window> windows = windows_of(spline, s);
     const auto n = static_cast<std::ptrdiff_t>(spline.spans());
     std::vector<double> free(spline.spans()), rough(spline.spans());
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kLocalRounds; ++round) {
         for (std::size_t k = 0; k < spline.spans(); ++k) {
             free[k] = spline.freedom(k, s.lambda[k]);
             rough[k] = spline.roughness(k);

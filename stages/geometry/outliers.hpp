@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stages/fit/pspline.hpp"
+#include "stages/geometry/pspline.hpp"
 
 /// Points that are off from what their neighbours agree on, told from bends, in which all neighbours take part.
 namespace seampath {

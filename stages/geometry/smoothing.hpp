@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "stages/fit/pspline.hpp"
+#include "stages/geometry/pspline.hpp"
 
 /// How stiff a penalised spline may be, chosen from the points alone. The third derivative is taken as random, of
 /// variance noise / lambda, and lambda as that which makes the points most likely (REML, by MacKay's fixed point 1992:

@@ -1,4 +1,4 @@
-#include "stages/fit/banded.hpp"
+#include "stages/geometry/banded.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
