@@ -7,6 +7,7 @@
 
 #include "pipeline/groove_columns.hpp"
 #include "pipeline/report_text.hpp"
+#include "pipeline/report_torch.hpp"
 #include "pipeline/svg.hpp"
 #include "stages/geometry/bspline.hpp"
 
@@ -244,12 +245,13 @@ std::string speed_plot(const PartResult& part, std::size_t seam) {
 std::string seam_plots(const PartResult& part, std::size_t seam) {
     const SeamModel& model = part.models[seam];
     if (part.nominal) {
-        return "<div class=\"plots\">\n" + curvature_plot(model, {}) + speed_plot(part, seam) + "</div>\n";
+        return "<div class=\"plots\">\n" + curvature_plot(model, {}) + speed_plot(part, seam) +
+               torch_plots(part, seam) + "</div>\n";
     }
     return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], std::max(model.length_mm, 1e-3)) +
            histogram(part.deviations[seam]) +
            curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) +
-           speed_plot(part, seam) + groove_plots(part.extraction.seams[seam]) + "</div>\n";
+           speed_plot(part, seam) + torch_plots(part, seam) + groove_plots(part.extraction.seams[seam]) + "</div>\n";
 }
 
 }  // namespace seampath

@@ -10,6 +10,7 @@
 #include "pipeline/report_arm.hpp"
 #include "pipeline/report_seams.hpp"
 #include "pipeline/report_text.hpp"
+#include "pipeline/report_torch.hpp"
 #include "stages/error.hpp"
 
 namespace seampath {
@@ -81,6 +82,8 @@ ReportRows path_rows(const PartResult& part) {
     if (!part.plan.passes.empty()) {
         rows.push_back(count("passes", "Passes", part.plan.passes.size()));
     }
+    const ReportRows torch = torch_rows(part.plan);
+    rows.insert(rows.end(), torch.begin(), torch.end());
     if (part.plan.arm) {
         const ReportRows arm = arm_rows(*part.plan.arm);
         rows.insert(rows.end(), arm.begin(), arm.end());
@@ -147,14 +150,17 @@ std::vector<ReportSetting> settings_of(const Config& config) {
 
 std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
     const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
-    const std::string arm = part.plan.arm && !part.plan.arm->pass ? "; " + valid_utf8(part.plan.arm->verdict) : "";
+    std::string path = part.plan.arm && !part.plan.arm->pass ? "; " + valid_utf8(part.plan.arm->verdict) : "";
+    for (const SeamRefusal& refusal : part.plan.refused) {
+        path += "; " + valid_utf8(refusal.reason);
+    }
     if (part.nominal) {
-        return found + " from nominal dimensions; not compared with a scan" + arm;
+        return found + " from nominal dimensions; not compared with a scan" + path;
     }
     if (part.models.empty()) {
         return "No seam was found in this scan";
     }
-    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces" + arm;
+    return std::to_string(in_tolerance) + " of " + found + " within tolerance of the scanned surfaces" + path;
 }
 
 }  // namespace

@@ -126,6 +126,9 @@ Fields describe(PlanOptions& o) {
          7},
         {"arm_roll_deg", &o.arm_roll_deg, "most that the arm may turn the torch about its wire, either way, deg",
          within(0, 180)},
+        {"arm_travel_angle_deg", &o.arm_travel_angle_deg,
+         "most that the travel angle may be changed, either way, for an arm that can't make the travel otherwise, deg",
+         within(0, 45)},
         {"arm_acceleration_deg_s2", &o.arm_acceleration_deg_s2, "acceleration limits of the arm's axes, deg/s2",
          above(0), 6},
     };

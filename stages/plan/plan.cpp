@@ -19,6 +19,9 @@ namespace {
 
 using namespace planning;
 
+// Between the travel angles that are tried for an arm.
+constexpr double kTravelStep_deg = 5;
+
 // Index in the seam, quaternion sign and time, each from the waypoint before. Along a weld, with its lead-in and
 // lead-out, the time between two of them stays as it was planned, elsewhere it is that of the straight move; a torch
 // that turns on the spot takes none.
@@ -98,18 +101,8 @@ void measure_again(Plan& plan) {
     measure_turns(plan);
 }
 
-}  // namespace
-
-Plan plan(std::span<const SeamModel> models, const PlanOptions& options, const std::optional<ArmCell>& cell,
-          const Scan* scan) {
-    ensure(options.speed_mm_s > 0 && options.air_speed_mm_s > 0 && options.approach_mm > 0 && options.retract_mm > 0 &&
-               options.chord_tolerance_mm > 0 && options.max_turn_deg > 0,
-           "plan options are within their bounds");
-    std::optional<Clearance> room;
-    if (scan != nullptr && options.nozzle_tip_mm && !models.empty()) {
-        room.emplace(*scan, models, options);
-    }
-    const Clearance* clearance = room ? &*room : nullptr;
+Plan plan_once(std::span<const SeamModel> models, const PlanOptions& options, const std::optional<ArmCell>& cell,
+               const Clearance* clearance) {
     Plan result;
     std::vector<std::vector<Waypoint>> all;
     for (const Visit& visit : visits(models, options)) {
@@ -126,6 +119,40 @@ Plan plan(std::span<const SeamModel> models, const PlanOptions& options, const s
     if (cell) {
         add_arm(result, *cell, options);
         measure_again(result);
+    }
+    return result;
+}
+
+PlanOptions with_travel_angle(PlanOptions options, double more_deg) {
+    options.travel_angle_deg += more_deg;
+    for (std::size_t i = 2; i < options.angle_table.size(); i += 3) {
+        options.angle_table[i] += more_deg;
+    }
+    return options;
+}
+
+}  // namespace
+
+Plan plan(std::span<const SeamModel> models, const PlanOptions& options, const std::optional<ArmCell>& cell,
+          const Scan* scan) {
+    ensure(options.speed_mm_s > 0 && options.air_speed_mm_s > 0 && options.approach_mm > 0 && options.retract_mm > 0 &&
+               options.chord_tolerance_mm > 0 && options.max_turn_deg > 0,
+           "plan options are within their bounds");
+    std::optional<Clearance> room;
+    if (scan != nullptr && !scan->points.empty() && options.nozzle_tip_mm && !models.empty()) {
+        room.emplace(*scan, models, options);
+    }
+    const Clearance* clearance = room ? &*room : nullptr;
+    Plan result = plan_once(models, options, cell, clearance);
+    for (double more = kTravelStep_deg; result.arm && more <= options.arm_travel_angle_deg; more += kTravelStep_deg) {
+        for (const double change : {more, -more}) {
+            if (!result.arm->pass) {
+                Plan other = plan_once(models, with_travel_angle(options, change), cell, clearance);
+                if (other.arm && other.arm->pass) {
+                    result = std::move(other);
+                }
+            }
+        }
     }
     return result;
 }

@@ -126,6 +126,7 @@ struct PlanOptions {
     std::string arm;
     std::vector<double> flange_from_tool{0, 0, 0, 1, 0, 0, 0};  ///< x, y, z mm, qw, qx, qy, qz
     double arm_roll_deg = 180;
+    double arm_travel_angle_deg = 0;
     std::vector<double> arm_acceleration_deg_s2{500, 500, 500, 1000, 1000, 1000};
 };
 Fields describe(PlanOptions&);
@@ -150,11 +151,16 @@ struct ArmCell {
 ///
 /// With a cell the plan says how the arm makes the travel: Plan::arm. The torch may be turned about its wire for it, by
 /// up to options.arm_roll_deg: waypoints get that turn, and more of them where it changes. An arm that can't make the
-/// travel leaves the waypoints as they are, with the reason in its verdict. Through the air it goes by its axes, and
-/// times are those of that. `options.arm`, a name, says nothing here.
+/// travel leaves the waypoints as they are, with the reason in its verdict; where options.arm_travel_angle_deg allows
+/// it, the travel is planned anew with other travel angles before, and the first that the arm makes is taken. Through
+/// the air it goes by its axes, and times are those of that. `options.arm`, a name, says nothing here.
+///
+/// With a scan and options.nozzle_tip_mm the torch is held clear of its points; a seam that leaves it no room gets no
+/// waypoints: Plan::refused.
 ///
 /// Throws InputError naming seam and station where the flanks have no bisector or the torch direction jumps, for a seam
-/// shorter than ten chord tolerances, and for a groove that no passes fill.
+/// shorter than ten chord tolerances, a weld shorter than its run-in, leads, way back or half a swing, pieces that
+/// don't fit, and a groove that no passes fill.
 Plan plan(std::span<const SeamModel> models, const PlanOptions& options, const std::optional<ArmCell>& cell = {},
           const Scan* scan = nullptr);
 
