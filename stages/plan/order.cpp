@@ -23,13 +23,13 @@ constexpr double kUnreached = std::numeric_limits<double>::infinity();
 constexpr double kBetter = 1e-9;
 
 /// One way to weld a seam: where the torch comes to it and leaves it.
-struct Way {
+struct SeamWay {
     PlanOptions options;
     Vector3d approach, retract;
 };
-using Ways = std::vector<std::vector<Way>>;  // of each seam
+using SeamWays = std::vector<std::vector<SeamWay>>;  // of each seam
 
-Way way_of(const SeamModel& model, int seam, const PlanOptions& o) {
+SeamWay way_of(const SeamModel& model, int seam, const PlanOptions& o) {
     const SeamModel way = whole_way(model, seam, o);
     const TorchPath path(way, seam, o);
     const TorchPose start = path.at_station(0), end = path.at_station(path.arc().length());
@@ -37,8 +37,8 @@ Way way_of(const SeamModel& model, int seam, const PlanOptions& o) {
             end.p - o.retract_mm * (end.q * Vector3d::UnitZ())};
 }
 
-std::vector<Way> ways_of_seam(const SeamModel& model, int seam, const PlanOptions& o) {
-    std::vector<Way> ways{way_of(model, seam, o)};
+std::vector<SeamWay> ways_of_seam(const SeamModel& model, int seam, const PlanOptions& o) {
+    std::vector<SeamWay> ways{way_of(model, seam, o)};
     PlanOptions other = o;
     if (model.closed && o.order_moves_starts) {
         for (int k = 1; k < kStarts; ++k) {
@@ -52,7 +52,7 @@ std::vector<Way> ways_of_seam(const SeamModel& model, int seam, const PlanOption
     return ways;
 }
 
-double between_ways(const Way& a, const Way& b) {
+double between_ways(const SeamWay& a, const SeamWay& b) {
     return (b.approach - a.retract).norm();
 }
 
@@ -61,7 +61,7 @@ struct ChosenWays {
     std::vector<std::size_t> way;  // one a place of the order
     double sum = 0;
 };
-ChosenWays best_ways(const Ways& ways, const Order& order) {
+ChosenWays best_ways(const SeamWays& ways, const Order& order) {
     std::vector<double> cost(ways[order.front()].size(), 0);
     std::vector<std::vector<std::size_t>> from;
     for (std::size_t k = 1; k < order.size(); ++k) {
@@ -90,7 +90,7 @@ ChosenWays best_ways(const Ways& ways, const Order& order) {
 }
 
 // Over all sets of seams that are done, and the last one of them in each of its ways.
-Order exact_order(const Ways& ways) {
+Order exact_order(const SeamWays& ways) {
     const std::size_t n = ways.size(), sets = std::size_t{1} << n;
     std::vector<std::size_t> first{0};
     for (const auto& seam : ways) {
@@ -136,15 +136,15 @@ Order exact_order(const Ways& ways) {
     return order;
 }
 
-Order nearest_neighbours(const Ways& ways, std::size_t start) {
+Order nearest_neighbours(const SeamWays& ways, std::size_t start) {
     Order order{start}, left(ways.size());
     std::iota(left.begin(), left.end(), 0);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(start));
     while (!left.empty()) {
         const auto distance = [&](std::size_t seam) {
             double least = kUnreached;
-            for (const Way& a : ways[order.back()]) {
-                for (const Way& b : ways[seam]) {
+            for (const SeamWay& a : ways[order.back()]) {
+                for (const SeamWay& b : ways[seam]) {
                     least = std::min(least, between_ways(a, b));
                 }
             }
@@ -159,7 +159,7 @@ Order nearest_neighbours(const Ways& ways, std::size_t start) {
 }
 
 // Reverses runs and moves single seams while that helps.
-void improve(const Ways& ways, Order& order) {
+void improve(const SeamWays& ways, Order& order) {
     double sum = best_ways(ways, order).sum;
     const auto take = [&](const Order& other) {
         const double its = best_ways(ways, other).sum;
@@ -192,7 +192,7 @@ void improve(const Ways& ways, Order& order) {
     }
 }
 
-Order shortest_order(const Ways& ways) {
+Order shortest_order(const SeamWays& ways) {
     double all = 0;
     for (const auto& seam : ways) {
         all += static_cast<double>(seam.size());
@@ -221,7 +221,7 @@ std::vector<Visit> visits(std::span<const SeamModel> models, const PlanOptions& 
         }
         return result;
     }
-    Ways ways;
+    SeamWays ways;
     for (std::size_t i = 0; i < models.size(); ++i) {
         ways.push_back(ways_of_seam(models[i], static_cast<int>(i), options));
     }
