@@ -128,6 +128,18 @@ void members(auto& archive, Is<PlannedPass> auto& v) {
     archive("tilt_rad", tilt_rad)("area_mm2", area_mm2)("least_mm2", least_mm2)("most_mm2", most_mm2);
 }
 
+void members(auto& archive, Is<TravelSample> auto& v) {
+    auto& [seam, weld, station_mm, speed, acceleration, centripetal, turn_rate, work_rad, travel_rad] = v;
+    archive("seam", seam)("weld", weld)("station_mm", station_mm)("speed_mm_s", speed);
+    archive("acceleration_mm_s2", acceleration)("centripetal_mm_s2", centripetal)("turn_rate_rad_s", turn_rate);
+    archive("work_rad", work_rad)("travel_rad", travel_rad);
+}
+
+void members(auto& archive, Is<SeamRefusal> auto& v) {
+    auto& [seam, station_mm, depth_mm, reason] = v;
+    archive("seam", seam)("station_mm", station_mm)("depth_mm", depth_mm)("reason", reason);
+}
+
 void members(auto& archive, Is<ArmSample> auto& v) {
     auto& [seam, kind, waypoint, station_mm, time_s, q, roll, manipulability] = v;
     archive("seam", seam)("kind", kind)("waypoint", waypoint)("station_mm", station_mm)("time_s", time_s);
@@ -145,9 +157,10 @@ void members(auto& archive, Is<ArmTravel> auto& v) {
 }
 
 void members(auto& archive, Is<Plan> auto& v) {
-    auto& [waypoints, max_chord_error_mm, max_speed_error, max_turn_deg, duration_s, passes, arm] = v;
+    auto& [waypoints, max_chord_error_mm, max_speed_error, max_turn_deg, duration_s, passes, travel, refused, arm] = v;
     archive("waypoints", waypoints)("max_chord_error_mm", max_chord_error_mm)("max_speed_error", max_speed_error);
-    archive("max_turn_deg", max_turn_deg)("duration_s", duration_s)("passes", passes)("arm", arm);
+    archive("max_turn_deg", max_turn_deg)("duration_s", duration_s)("passes", passes);
+    archive("travel", travel)("refused", refused)("arm", arm);
 }
 
 // The rest of the text of a scan is for people.

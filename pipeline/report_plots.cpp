@@ -270,13 +270,12 @@ std::string seam_plots(const PartResult& part, std::size_t seam) {
     const SeamModel& model = part.models[seam];
     if (part.nominal) {
         return "<div class=\"plots\">\n" + curvature_plot(model, {}) + speed_plot(part, seam) +
-               torch_angle_plot(part, seam) + "</div>\n";
+               torch_plots(part, seam) + "</div>\n";
     }
     return "<div class=\"plots\">\n" + deviation_plot(part.deviations[seam], model) + section_panel(seam) +
            histogram(part.deviations[seam]) +
            curvature_plot(model, node_positions(part.extraction.seams[seam], part.nodes[seam])) + band_plot(model) +
-           speed_plot(part, seam) + torch_angle_plot(part, seam) + groove_plots(part.extraction.seams[seam]) +
-           "</div>\n";
+           speed_plot(part, seam) + torch_plots(part, seam) + groove_plots(part.extraction.seams[seam]) + "</div>\n";
 }
 
 }  // namespace seampath

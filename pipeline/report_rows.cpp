@@ -11,6 +11,7 @@
 #include "pipeline/report_arm.hpp"
 #include "pipeline/report_seams.hpp"
 #include "pipeline/report_text.hpp"
+#include "pipeline/report_torch.hpp"
 #include "stages/error.hpp"
 #include "stages/text.hpp"
 
@@ -96,6 +97,8 @@ ReportRows path_rows(const PartResult& part) {
     if (!part.plan.passes.empty()) {
         rows.push_back(count("passes", "Passes", part.plan.passes.size()));
     }
+    const ReportRows torch = torch_rows(part.plan);
+    rows.insert(rows.end(), torch.begin(), torch.end());
     if (part.plan.arm) {
         const ReportRows arm = arm_rows(*part.plan.arm);
         rows.insert(rows.end(), arm.begin(), arm.end());
@@ -162,9 +165,12 @@ std::vector<ReportSetting> settings_of(const Config& config) {
 
 std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
     const std::string found = std::to_string(part.models.size()) + (part.models.size() == 1 ? " seam" : " seams");
-    const std::string arm = part.plan.arm && !part.plan.arm->pass ? "; " + valid_utf8(part.plan.arm->verdict) : "";
+    std::string path = part.plan.arm && !part.plan.arm->pass ? "; " + valid_utf8(part.plan.arm->verdict) : "";
+    for (const SeamRefusal& refusal : part.plan.refused) {
+        path += "; " + valid_utf8(refusal.reason);
+    }
     if (part.nominal) {
-        return found + " from nominal dimensions; not compared with a scan" + arm;
+        return found + " from nominal dimensions; not compared with a scan" + path;
     }
     if (part.models.empty()) {
         return "No seam was found in this scan";
@@ -175,7 +181,7 @@ std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
     }
     return std::to_string(in_tolerance) + " of " + found +
            " within tolerance of the scanned surfaces; the worst, seam " + std::to_string(worst) + ", uses " +
-           fixed(100 * tolerance_used(part.deviations[worst]), 0) + " % of its tolerance" + arm;
+           fixed(100 * tolerance_used(part.deviations[worst]), 0) + " % of its tolerance" + path;
 }
 
 }  // namespace

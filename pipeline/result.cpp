@@ -5,7 +5,7 @@
 namespace seampath {
 
 bool PartResult::pass() const {
-    if (plan.arm && !plan.arm->pass) {
+    if ((plan.arm && !plan.arm->pass) || !plan.refused.empty()) {
         return false;
     }
     if (nominal) {

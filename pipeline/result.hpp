@@ -42,8 +42,8 @@ struct PartResult {
     std::vector<ProgramFile> programs;
     std::vector<StageTiming> timings;
 
-    /// At least one seam, and all of them in tolerance, where there is a scan to hold them against; and an arm, where
-    /// one is given, that makes the travel.
+    /// At least one seam, and all of them in tolerance, where there is a scan to hold them against; none that leaves
+    /// the torch no room; and an arm, where one is given, that makes the travel.
     bool pass() const;
 };
 

@@ -63,7 +63,7 @@ Plan plan_seams(const PartResult& part, const Cell& cell) {
     for (const int i : part.planned_seams) {
         models.push_back(part.models.at(static_cast<std::size_t>(i)));
     }
-    Plan made = models.empty() ? Plan() : plan(models, part.config.plan, cell.arm);
+    Plan made = models.empty() ? Plan() : plan(models, part.config.plan, cell.arm, &part.scan);
     if (cell.fixture) {
         add_place_sigma(*cell.fixture, made);
     }
@@ -73,7 +73,7 @@ Plan plan_seams(const PartResult& part, const Cell& cell) {
 /// Whether anything may be written that a robot runs.
 bool may_export(const PartResult& part) {
     const bool reached = !part.plan.arm || part.plan.arm->pass || part.config.export_.even_if_out_of_tolerance;
-    return !part.planned_seams.empty() && reached;
+    return !part.plan.waypoints.empty() && reached;
 }
 
 /// What the arm says of itself where the options do not.

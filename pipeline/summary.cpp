@@ -97,7 +97,8 @@ std::string plan_summary(const PartResult& part) {
     return count(part.planned_seams.size(), "seam") + " -> " +
            (plan.passes.empty() ? "" : std::to_string(plan.passes.size()) + " passes, ") +
            count(plan.waypoints.size(), "waypoint") + ", " + fixed(plan.duration_s, 1) + " s of travel; chord error " +
-           mm(plan.max_chord_error_mm) + (plan.arm ? "; " + plan.arm->verdict : "");
+           mm(plan.max_chord_error_mm) + (plan.refused.empty() ? "" : "; " + plan.refused.front().reason) +
+           (plan.arm ? "; " + plan.arm->verdict : "");
 }
 
 std::string export_summary(const PartResult& part) {
@@ -113,9 +114,11 @@ std::string report_summary(const PartResult& part) {
 
 std::string_view verdict(const PartResult& part) {
     const bool arm_fails = part.plan.arm && !part.plan.arm->pass;
+    const bool refused = !part.plan.refused.empty();
     return part.pass()           ? "pass"
            : part.models.empty() ? "no seam found"
            : arm_fails           ? "the arm can't make it"
+           : refused             ? "no room for the torch"
                                  : "out of tolerance";
 }
 

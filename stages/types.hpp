@@ -243,6 +243,29 @@ struct PlannedPass {
     double most_mm2 = 0;
 };
 
+/// The torch at one place of a weld. Angles are of its wire against the bisector of the flanks: work about the
+/// direction of travel, above 0 with the torch's body leaning towards flank 1; travel about the cross direction, above
+/// 0 when it points ahead.
+struct TravelSample {
+    int seam = 0;
+    int weld = 0;  ///< from 0 in each seam, in the order of welding: its passes, stitches
+    double station_mm = 0;
+    double speed_mm_s = 0;
+    double acceleration_mm_s2 = 0;  ///< along the seam
+    double centripetal_mm_s2 = 0;   ///< speed squared over the seam's radius
+    double turn_rate = 0;           ///< of the torch, rad/s
+    double work_rad = 0;
+    double travel_rad = 0;
+};
+
+/// A seam that gets no torch path, and why.
+struct SeamRefusal {
+    int seam = 0;
+    double station_mm = 0;
+    double depth_mm = 0;  ///< by which the scan would reach into the torch there
+    std::string reason;   ///< one sentence
+};
+
 /// Where a robot arm stands at one moment of a travel.
 struct ArmSample {
     int seam = 0;
@@ -277,11 +300,13 @@ struct ArmTravel {
 struct Plan {
     std::vector<Waypoint> waypoints;  ///< in the order of travel
     double max_chord_error_mm = 0;    ///< largest distance of the seam curve from the straight moves
-    double max_speed_error = 0;       ///< relative, of straight moves between weld waypoints against plan.speed_mm_s
+    double max_speed_error = 0;       ///< relative, of straight moves between weld waypoints against the seam's speed
     double max_turn_deg = 0;          ///< largest rotation between neighbouring weld waypoints
     double duration_s = 0;
-    std::vector<PlannedPass> passes;  ///< in the order of travel; empty where every seam is one pass
-    std::optional<ArmTravel> arm;     ///< where an arm is given
+    std::vector<PlannedPass> passes;   ///< in the order of travel; empty where every seam is one pass
+    std::vector<TravelSample> travel;  ///< along every weld, ascending stations
+    std::vector<SeamRefusal> refused;  ///< without waypoints
+    std::optional<ArmTravel> arm;      ///< where an arm is given
 };
 
 }  // namespace seampath

@@ -75,8 +75,12 @@ void add_air(std::vector<Target>& targets, const std::vector<ArmSample>& samples
             at[static_cast<std::size_t>(sample.waypoint)] = &sample;
         }
     }
-    for (Target& target : targets) {
-        if (in_air(target)) {
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+        Target& target = targets[k];
+        // From one approach to another the torch leads in.
+        const bool leads_in =
+            k > 0 && target.at.kind == WaypointKind::approach && targets[k - 1].at.kind == WaypointKind::approach;
+        if (in_air(target) && !leads_in) {
             const auto found = at.find(target.waypoint);
             ensure(found != at.end(), "the arm passes every waypoint");
             target.move = Move::joint;

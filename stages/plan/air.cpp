@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "stages/angle.hpp"
 #include "stages/geometry/pose.hpp"
 
 namespace seampath::planning {
@@ -57,13 +58,44 @@ Eigen::Vector3d lift_direction(const Waypoint& retract, const Waypoint& approach
     return square.norm() > 1e-6 ? square.normalized() : retract.q * Eigen::Vector3d::UnitX();
 }
 
+// Turns of the direction in which the torch backs off, and how many directions round it are tried at each.
+constexpr double kBackStep = 15 * kDegree, kBackMost = 60 * kDegree;
+constexpr int kBackDirections = 12;
+
 }  // namespace
 
+std::optional<Waypoint> backed_off(const Waypoint& w, WaypointKind kind, double back_mm, double speed_mm_s,
+                                   const Clearance* clearance) {
+    Waypoint away = w;
+    away.kind = kind;
+    away.speed_mm_s = speed_mm_s;
+    const auto free_in = [&](const Eigen::Vector3d& back) {
+        away.p = w.p + back_mm * back;
+        return clearance == nullptr || clearance->way_is_free(w, away);
+    };
+    const Eigen::Vector3d back = away_from_joint(w);
+    if (free_in(back)) {
+        return away;
+    }
+    for (double turn = kBackStep; turn <= kBackMost; turn += kBackStep) {
+        for (int k = 0; k < kBackDirections; ++k) {
+            const Eigen::AngleAxisd round(kTurn * k / kBackDirections, back);
+            if (free_in(Eigen::AngleAxisd(turn, round * (w.q * Eigen::Vector3d::UnitX())) * back)) {
+                return away;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
 std::optional<Waypoint> air_point(const Waypoint& retract, const Waypoint& approach, const Seams& seams,
-                                  double clearance_mm) {
+                                  double clearance_mm, const Clearance* clearance) {
+    const auto free = [&](const Waypoint& from, const Waypoint& to, double keep) {
+        return clear(seams, from.p, to.p, keep) && (clearance == nullptr || clearance->way_is_free(from, to));
+    };
     const double keep =
         std::min({clearance_mm, distance_to_seams(seams, retract.p), distance_to_seams(seams, approach.p)});
-    if (keep <= 0 || clear(seams, retract.p, approach.p, keep)) {
+    if (keep <= 0 || free(retract, approach, keep)) {
         return std::nullopt;
     }
     const Eigen::Vector3d up = lift_direction(retract, approach, seams);
@@ -75,7 +107,7 @@ std::optional<Waypoint> air_point(const Waypoint& retract, const Waypoint& appro
     double height = clearance_mm;
     for (int doubling = 0; doubling <= 5; ++doubling, height *= 2) {
         air.p = middle + height * up;
-        if (clear(seams, retract.p, air.p, keep) && clear(seams, air.p, approach.p, keep)) {
+        if (free(retract, air, keep) && free(air, approach, keep)) {
             break;
         }
     }

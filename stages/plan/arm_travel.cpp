@@ -338,10 +338,12 @@ private:
 std::vector<std::pair<std::size_t, std::size_t>> ways_of(const std::vector<Waypoint>& waypoints) {
     std::vector<std::pair<std::size_t, std::size_t>> ways;
     std::size_t first = 0;
+    const auto is = [&](std::size_t k, WaypointKind kind) { return k < waypoints.size() && waypoints[k].kind == kind; };
     for (std::size_t k = 0; k < waypoints.size(); ++k) {
-        if (waypoints[k].kind == WaypointKind::approach) {
+        // A lead-in begins with a second approach, a lead-out ends before a second retract.
+        if (is(k, WaypointKind::approach) && (k == 0 || !is(k - 1, WaypointKind::approach))) {
             first = k;
-        } else if (waypoints[k].kind == WaypointKind::retract) {
+        } else if (is(k, WaypointKind::retract) && !is(k + 1, WaypointKind::retract)) {
             ways.emplace_back(first, k);
         }
     }

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "stages/angle.hpp"
 #include "stages/error.hpp"
-#include "stages/plan/chord.hpp"
 #include "stages/plan/text.hpp"
 
 namespace seampath::planning {
@@ -14,6 +13,11 @@ namespace {
 
 // A move shorter than this is no progress: the torch direction jumps.
 constexpr double kMinStep_mm = 1e-6;
+
+// A change of speed so near to a waypoint is told by that one.
+constexpr double kMinChange_mm = 0.01;
+
+constexpr double kMostWaypoints = 1e6;
 
 // Halvings of the share of the limits that every move uses; found to one in a million, waypoints are the same from
 // either end to 0.1 um on the seams of the tests.
@@ -182,7 +186,7 @@ std::vector<TorchPose> choose(const TorchPath& path, const Samples& samples, con
     if (passes.forward.back() < length || passes.backward.front() > 0) {
         const double jump = passes.forward.back() < length ? passes.forward.back() : passes.backward.front();
         throw InputError(seam_text(path.seam()) + ": the torch direction jumps at station " + number(jump) +
-                         " mm, so no move holds plan.max_turn_deg = " + number(limits.turn * 180 / std::numbers::pi) +
+                         " mm, so no move holds plan.max_turn_deg = " + number(limits.turn / kDegree) +
                          "; a smooth curve and smooth flanks are needed; look at the seam there");
     }
     const std::size_t moves = passes.moves();
@@ -209,12 +213,61 @@ std::vector<TorchPose> choose(const TorchPath& path, const Samples& samples, con
                : poses_at(path, passes.forward.size() - 1 == moves ? passes.forward : passes.backward);
 }
 
+// At equal times, equal distances or knots.
+std::vector<double> asked_stations(const TorchPath& path, const SpeedProfile& profile, const PlanOptions& options) {
+    const double end = path.arc().length();
+    std::vector<double> stations{0};
+    // Near to rest even a short step takes its time.
+    const double least = options.period_s ? 0 : kMinStep_mm;
+    const auto add = [&](double station) {
+        if (station > stations.back() + least && station < end - least) {
+            stations.push_back(station);
+        }
+    };
+    if (options.at_knots) {
+        for (const double knot : path.arc().curve().knots) {
+            add(path.arc().station(std::clamp(knot, path.first(), path.last())));
+        }
+    } else {
+        const double every = options.period_s ? *options.period_s : *options.step_mm;
+        const double all = options.period_s ? profile.duration() : end;
+        if (all / every > kMostWaypoints) {
+            throw InputError(seam_text(path.seam()) + ": plan." + (options.period_s ? "period_s = " : "step_mm = ") +
+                             number(every) + " gives " + number(std::ceil(all / every)) + " waypoints; at most " +
+                             number(kMostWaypoints) + " are made of a weld; a larger one is needed");
+        }
+        for (int k = 1; k * every < all; ++k) {
+            add(options.period_s ? profile.station(k * every) : k * every);
+        }
+    }
+    stations.push_back(end);
+    return stations;
+}
+
+// And where the speed changes.
+std::vector<TorchPose> with_changes(const TorchPath& path, const SpeedProfile& profile, std::vector<TorchPose> poses) {
+    for (const double station : profile.changes()) {
+        const auto above = std::lower_bound(poses.begin(), poses.end(), station,
+                                            [](const TorchPose& pose, double s) { return pose.station_mm < s; });
+        if (above != poses.begin() && above != poses.end() &&
+            std::min(above->station_mm - station, station - (above - 1)->station_mm) > kMinChange_mm) {
+            poses.insert(above, path.at_station(station));
+        }
+    }
+    return poses;
+}
+
 }  // namespace
 
-WeldPoses weld_poses(const TorchPath& path, const PlanOptions& options) {
-    const Samples samples = sample(path, options.chord_tolerance_mm);
+WeldPoses weld_poses(const TorchPath& path, const Samples& samples, const SpeedProfile& profile,
+                     const PlanOptions& options) {
     WeldPoses result;
-    result.poses = choose(path, samples, {options.chord_tolerance_mm, options.max_turn_deg * std::numbers::pi / 180});
+    if (options.period_s || options.step_mm || options.at_knots) {
+        result.poses = poses_at(path, asked_stations(path, profile, options));
+    } else {
+        result.poses = with_changes(
+            path, profile, choose(path, samples, {options.chord_tolerance_mm, options.max_turn_deg * kDegree}));
+    }
     for (std::size_t k = 0; k + 1 < result.poses.size(); ++k) {
         result.max_chord_error_mm =
             std::max(result.max_chord_error_mm, chord(samples, result.poses[k], result.poses[k + 1]).error_mm);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -18,27 +20,63 @@ struct TorchPose {
     double sigma_mm = 0;
 };
 
+/// An angle along a seam: straight between ascending stations, constant beyond them, 0 when there are none.
+struct AngleTable {
+    std::vector<double> station_mm;
+    std::vector<double> angle;  ///< rad, one a station
+
+    double at(double station) const;
+};
+
+/// The wire's lean in the frame of the middle between the flanks, rad; see TravelSample.
+struct Lean {
+    double work = 0;
+    double travel = 0;
+};
+
 class TorchPath {
 public:
-    /// Keeps a reference to the model. Throws InputError for a seam too short to plan.
-    TorchPath(const SeamModel& model, int seam, const PlanOptions& options);
+    /// Keeps references to model and options. `before_mm`: of the seam before this piece of it, by which the stations
+    /// of plan.angle_table count. Throws InputError for a seam too short to plan.
+    TorchPath(const SeamModel& model, int seam, const PlanOptions& options, double before_mm = 0);
 
     const SeamModel& model() const { return model_; }
     const ArcLength& arc() const { return arc_; }
     int seam() const { return seam_; }
+    double before_mm() const { return before_mm_; }
+    double first() const { return first_parameter(arc_.curve()); }
+    double last() const { return last_parameter(arc_.curve()); }
 
-    /// +Z is the direction nearest to -(n1 + n2) that is square to travel, +X is along travel; then the work angle
-    /// turns about +X and the travel angle about +Y. Throws InputError where the flanks have no bisector.
+    /// In the frame of middle() the work angle turns about +X, the travel angle about +Y, the roll about +Z: the
+    /// constant ones or those of plan.angle_table, what plan.torch_law adds to the work angle, both smoothed where
+    /// plan.tilt_rate_deg_mm says so, and the roll of plan.roll. Throws InputError where the flanks have no bisector.
     TorchPose at_parameter(double u) const { return at(u, arc_.station(u)); }
     TorchPose at_station(double station_mm) const;
 
+    /// +Z is the direction nearest to -(n1 + n2) that is square to travel, +X is along travel.
+    Eigen::Quaterniond middle(double u, double station_mm) const;
+
+    /// Half the angle between the flanks, in the section square to travel, rad.
+    double half_opening(double u, double station_mm) const;
+
+    /// Of a pose of this path.
+    Lean lean(const TorchPose& pose) const;
+
+    /// Leans the torch by so much more about the direction of travel and turns it about its wire.
+    void hold_aside(AngleTable work, AngleTable roll);
+
 private:
     TorchPose at(double u, double station_mm) const;
+    Lean asked_lean(double u, double station_mm) const;
+    void smooth_lean(double rate);
+    void turn_least();
 
     const SeamModel& model_;
+    const PlanOptions& options_;
     ArcLength arc_;
     int seam_;
-    Eigen::Quaterniond tilt_;
+    double before_mm_;
+    AngleTable smooth_work_, smooth_travel_, aside_work_, aside_roll_, least_roll_;
 };
 
 }  // namespace seampath::planning

@@ -110,12 +110,14 @@ Deviation random_deviation(Numbers& n) {
 }
 
 Plan random_plan(Numbers& n) {
-    Plan plan{{}, n.any(), n.any(), n.any(), n.any(), {}, {}};
+    Plan plan{{}, n.any(), n.any(), n.any(), n.any(), {}, {}, {}, {}};
     for (int i = 0; i < 10; ++i) {
         const Eigen::Quaterniond q(n.any(), n.any(), n.any(), n.any());
         plan.waypoints.push_back(
             {i / 5, i % 5, static_cast<WaypointKind>(n.below(6)), n.any(), n.vector(), q, n.any(), n.any(), n.any()});
         plan.passes.push_back({i / 5, i % 5, i % 2, n.any(), n.any(), n.any(), n.any(), n.any(), n.any()});
+        plan.travel.push_back({i / 5, i % 5, n.any(), n.any(), n.any(), n.any(), n.any(), n.any(), n.any()});
+        plan.refused.push_back({i, n.any(), n.any(), "it touches"});
     }
     if (n.flip()) {
         const auto six = [&n] { return std::array<double, 6>{n.any(), n.any(), n.any(), n.any(), n.any(), n.any()}; };
@@ -147,8 +149,15 @@ TEST(Codec, EveryStageResultReadsBackExactly) {
 }
 
 TEST(Codec, KeepsEveryMemberInItsPlace) {
-    const Plan plan{
-        {{3, 4, WaypointKind::weld_end, 0.1, {1, 2, 3}, {0.5, -0.5, 0.25, -0.0}, 8, 9, 10}}, 0.5, 0.25, 2, 60, {}, {}};
+    const Plan plan{{{3, 4, WaypointKind::weld_end, 0.1, {1, 2, 3}, {0.5, -0.5, 0.25, -0.0}, 8, 9, 10}},
+                    0.5,
+                    0.25,
+                    2,
+                    60,
+                    {},
+                    {},
+                    {},
+                    {}};
     Plan back;
     decode(encode(plan), back);
     const Waypoint& w = back.waypoints.at(0);

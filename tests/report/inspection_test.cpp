@@ -75,18 +75,15 @@ TEST(Inspection, TorchAnglesAreThoseThatThePlanWasAskedFor) {
     options.work_angle_deg = 12;
     options.travel_angle_deg = -7;
     part.plan = plan(part.models, options);
-    for (std::size_t seam = 0; seam < 2; ++seam) {
-        const TorchAngles angles = torch_angles(part, seam);
-        ASSERT_GT(angles.work.size(), 3U);
-        for (std::size_t i = 0; i < angles.work.size(); ++i) {
-            EXPECT_NEAR(angles.work[i].y, 12, 1e-6);
-            EXPECT_NEAR(angles.travel[i].y, -7, 1e-6);
-        }
-        EXPECT_NEAR(angles.most, 12, 1e-6);
+    ASSERT_GT(part.plan.travel.size(), 6U);
+    for (const TravelSample& s : part.plan.travel) {
+        EXPECT_NEAR(s.work_rad, 12 * kDegree, 1e-6);
+        EXPECT_NEAR(s.travel_rad, -7 * kDegree, 1e-6);
     }
+    EXPECT_NE(torch_plots(part, 0).find("Torch angles"), std::string::npos);
     part.planned_seams = {1};
     part.plan = {};
-    EXPECT_TRUE(torch_angles(part, 0).work.empty());
+    EXPECT_EQ(torch_plots(part, 0), "");
 }
 
 /// The rib of the example is a wall along x on a plate, both with waves of 0.05 mm; the seam's section shows them as
