@@ -185,8 +185,8 @@ double ViewShifts::settle(const std::vector<Flank>& flanks, double shift_varianc
     const Eigen::LDLT<MatrixXd> ldlt(MatrixXd::Identity(all, all) + shift_variance * A);
     shift_covariance_ = shift_variance * ldlt.solve(MatrixXd::Identity(all, all));
     shift_ = shift_covariance_ * right;
-    for (Bias& bias : bias_) {
-        bias.value -= bias.by_shift * shift_;
+    for (Bias& of_flank : bias_) {
+        of_flank.value -= of_flank.by_shift * shift_;
     }
     return -0.5 * (logarithms + log_determinant(ldlt) + squares - right.dot(shift_));
 }
