@@ -162,14 +162,17 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
     Tracker measuring = following;
     measuring.window_of = measuring_window;
     ViewDifferences differences;
-    for (const Fold& fold : folds) {
+    std::vector<MeasuredWay> ways;
+    for (Fold& fold : folds) {
         add_differences(differences, fold.way);
+        ways.push_back({measuring, &fold.way});
     }
     result.registration_mm = registration_of(differences);
-    const double registration = registration_that_counts(following, result.registration_mm);
-    for (Fold& fold : folds) {
-        fold.surfaces = settle_on_whole_flanks(measuring, registration, fold.way);
-        result.seams.push_back(seam_of(fold, around.scan.origin_mm));
+    std::vector<SeamSurfaces> surfaces =
+        settle_on_whole_flanks(ways, registration_that_counts(following, result.registration_mm));
+    for (std::size_t i = 0; i < folds.size(); ++i) {
+        folds[i].surfaces = std::move(surfaces[i]);
+        result.seams.push_back(seam_of(folds[i], around.scan.origin_mm));
     }
     return result;
 }

@@ -259,14 +259,17 @@ Laps find_laps(const Around& around, const std::vector<Border>& borders, const L
         add_differences(differences, lap.measured.way);
     }
     result.registration_mm = registration_of(differences);
+    std::vector<MeasuredWay> ways;
     for (Lap& lap : laps) {
         Tracker measuring = around.following;
         measuring.window_of = measuring_window;
         measuring.wall = lap.thickness;
         share_angle(measuring, lap.measured.way);
         lap.measured.way = without_jumps(std::move(lap.measured.way), lap.measured.closed);
-        settle_on_whole_flanks(measuring, registration_that_counts(measuring, result.registration_mm),
-                               lap.measured.way);
+        ways.push_back({measuring, &lap.measured.way});
+    }
+    settle_on_whole_flanks(ways, registration_that_counts(around.following, result.registration_mm));
+    for (const Lap& lap : laps) {
         result.seams.push_back(seam_of(lap, around.scan.origin_mm, asked));
     }
     return result;

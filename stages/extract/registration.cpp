@@ -63,44 +63,36 @@ double registration_of(const ViewDifferences& sum) {
     return sum.pairs > 0 ? std::sqrt(std::max(0.0, sum.products) / sum.pairs / 2) : 0;
 }
 
-std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<TrackPoint>& way, int k) {
-    std::vector<double> variance;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        const auto reach = static_cast<std::size_t>(std::lround(way[i].along / tracker.step));
-        const OffByView views = off_by_view(way, i > reach ? i - reach : 0, std::min(way.size(), i + reach + 1), k);
-        double squares = 0, all = 0;
-        for (const auto& [view, off] : views) {
-            squares += off.count * off.count;
-            all += off.count;
-        }
-        variance.push_back(all > 0 ? squares / (all * all) : 1);
-    }
-    return variance;
-}
-
 // A shift b of a view changes the distances of its points by -n.b: the normal equations with that on their right side.
-ShiftOfSurface::ShiftOfSurface(const SurfaceFit& surface, const FlankPool& pool) : surface_(surface) {
+// Such a step of the parameters moves the surface by row.step against its normal.
+ShiftOfSurface::ShiftOfSurface(const SurfaceFit& surface, const FlankPool& pool, std::size_t views)
+    : surface_(surface) {
     const int n = surface.parameters();
     SurfaceFit::Matrix normal = SurfaceFit::Matrix::Zero(n, n);
-    std::map<std::uint32_t, Influence> sums;
+    std::vector<Influence> sums(views, Influence::Zero(n, 4));
     for (std::size_t i = 0; i < pool.points.size(); ++i) {
-        const SurfaceFit::Vector row = surface.weight(pool.points[i]) * surface.row(pool.points[i]);
-        normal += row * surface.row(pool.points[i]).transpose();
-        const auto [sum, fresh] = sums.try_emplace(pool.view[i], Influence::Zero(n, 3));
-        sum->second += row * surface.normal(pool.points[i]).transpose();
+        const SurfaceFit::Vector row = surface.row(pool.points[i]);
+        const Eigen::Vector3d at = surface.normal(pool.points[i]);
+        const double w = surface.weight(pool.points[i]);
+        normal += w * row * row.transpose();
+        sums[pool.view[i] - 1] += w * row * Eigen::RowVector4d(at.x(), at.y(), at.z(), 1);
     }
     const Eigen::LDLT<SurfaceFit::Matrix> ldlt(normal);
-    for (const auto& [view, sum] : sums) {
+    for (const Influence& sum : sums) {
         influence_.push_back(ldlt.solve(sum));
     }
 }
 
-double ShiftOfSurface::at(const Eigen::Vector3d& p) const {
-    double variance = 0;
-    for (const Influence& influence : influence_) {
-        variance += (surface_.row(p).transpose() * influence).squaredNorm();
+ViewShares ShiftOfSurface::at(const Eigen::Vector3d& p) const {
+    const auto views = static_cast<Eigen::Index>(influence_.size());
+    ViewShares shares{Eigen::VectorXd(3 * views), Eigen::VectorXd(views)};
+    const SurfaceFit::Vector row = surface_.row(p);
+    for (Eigen::Index v = 0; v < views; ++v) {
+        const Eigen::RowVector4d share = row.transpose() * influence_[static_cast<std::size_t>(v)];
+        shares.by_axis.segment<3>(3 * v) = share.head<3>().transpose();
+        shares.by_normal[v] = share[3];
     }
-    return variance;
+    return shares;
 }
 
 }  // namespace seampath::detail

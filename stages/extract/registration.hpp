@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "stages/extract/track.hpp"
+#include "stages/extract/view_shifts.hpp"
 #include "stages/geometry/flank_pool.hpp"
 #include "stages/geometry/surface_fit.hpp"
 
@@ -23,20 +24,17 @@ void add_differences(ViewDifferences& sum, const std::vector<TrackPoint>& way);
 /// one.
 double registration_of(const ViewDifferences& sum);
 
-/// Variance, per variance of the shifts, with which shifts of the views move flank k as it is measured at each place by
-/// its own window: the sum of squares of the views' shares of the points.
-std::vector<double> shift_of_windows(const Tracker& tracker, const std::vector<TrackPoint>& way, int k);
-
-/// The same for a surface fitted to all of the flank's points.
+/// How the views' shifts move a surface that was fitted to all of a flank's points.
 class ShiftOfSurface {
 public:
-    ShiftOfSurface(const SurfaceFit& surface, const FlankPool& pool);
-    double at(const Eigen::Vector3d& p) const;
+    ShiftOfSurface(const SurfaceFit& surface, const FlankPool& pool, std::size_t views);
+    /// Of the surface at p, along its normal there.
+    ViewShares at(const Eigen::Vector3d& p) const;
 
 private:
-    using Influence = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, SurfaceFit::kMostParameters, 3>;
+    using Influence = Eigen::Matrix<double, Eigen::Dynamic, 4, 0, SurfaceFit::kMostParameters, 4>;
     const SurfaceFit& surface_;
-    std::vector<Influence> influence_;  ///< of each view's shift on the parameters
+    std::vector<Influence> influence_;  ///< of each view's shift by axis, and by normal, on the parameters
 };
 
 }  // namespace seampath::detail

@@ -18,10 +18,12 @@ namespace {
 struct FlankOfWay {
     FlankPool pool;
     FlankFit fit;
-    std::vector<double> shift;  ///< of each place, variance that shifts make, per variance of them; empty without whole
+    std::vector<double> shift;  ///< of each place, variance of what stays unknown of the views' shifts, mm^2
 };
 
-FlankOfWay flank_of(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t k, double least_scale) {
+FlankOfWay flank_of(const Tracker& tracker, const ViewShifts& shifts, std::size_t number,
+                    const std::vector<TrackPoint>& way, double least_scale) {
+    const std::size_t k = number % 2;
     std::vector<FlankPlace> places;
     for (const TrackPoint& at : way) {
         places.push_back({at.section.p, k == 0 ? at.section.n1 : at.section.n2, at.flank_sigma[k], at.flank_scale[k],
@@ -32,9 +34,9 @@ FlankOfWay flank_of(const Tracker& tracker, const std::vector<TrackPoint>& way, 
     FlankOfWay flank{pool_of(places, static_cast<std::size_t>(std::lround(reach)), scale.correlation), {}, {}};
     flank.fit = fit_whole_flank(places, flank.pool, {flank.pool.reach, least_scale});
     if (flank.fit.whole) {
-        const ShiftOfSurface shift(flank.fit.whole->surface, flank.pool);
+        const ShiftOfSurface shift(flank.fit.whole->surface, flank.pool, shifts.views());
         for (const TrackPoint& place : way) {
-            flank.shift.push_back(shift.at(place.section.p));
+            flank.shift.push_back(shifts.variance(number, shift.at(place.section.p)));
         }
     }
     return flank;
@@ -70,20 +72,30 @@ void settle(TrackPoint& place, std::size_t i, const std::array<FlankOfWay, 2>& f
 
 // Variance of the place across flank k: what noise leaves and, which no fit sees, what the views' shifts do.
 double variance_across(const TrackPoint& place, std::size_t i, std::size_t k, const FlankOfWay& flank,
-                       double window_shift, double registration) {
+                       double window_shift) {
     const auto& whole = flank.fit.whole;
-    const double share = whole ? whole->share[i] : 0, shifts = registration * registration;
-    const double own = std::pow(place.flank_sigma[k], 2) + shifts * window_shift;
-    return (1 - share) * own + (whole ? share * (whole->at[i].variance + shifts * flank.shift[i]) : 0);
+    const double share = whole ? whole->share[i] : 0;
+    const double own = std::pow(place.flank_sigma[k], 2) + window_shift;
+    return (1 - share) * own + (whole ? share * (whole->at[i].variance + flank.shift[i]) : 0);
 }
 
-}  // namespace
+// Of the windows of all places across one flank.
+std::vector<double> shift_of_windows(const Tracker& tracker, const ViewShifts& shifts, std::size_t number,
+                                     const std::vector<TrackPoint>& way) {
+    std::vector<double> variance;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        variance.push_back(shifts.variance(number, shares_of_window(tracker, way, i, number % 2)));
+    }
+    return variance;
+}
 
-SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration, std::vector<TrackPoint>& way) {
+SeamSurfaces settle_way(const Tracker& tracker, const ViewShifts& shifts, std::size_t first, double registration,
+                        std::vector<TrackPoint>& way) {
     const double least_scale = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
-    const std::array<FlankOfWay, 2> flanks{flank_of(tracker, way, 0, least_scale),
-                                           flank_of(tracker, way, 1, least_scale)};
-    const std::vector<double> shift[2] = {shift_of_windows(tracker, way, 0), shift_of_windows(tracker, way, 1)};
+    const std::array<FlankOfWay, 2> flanks{flank_of(tracker, shifts, first, way, least_scale),
+                                           flank_of(tracker, shifts, first + 1, way, least_scale)};
+    const std::vector<double> shift[2] = {shift_of_windows(tracker, shifts, first, way),
+                                          shift_of_windows(tracker, shifts, first + 1, way)};
     for (std::size_t i = 0; i < way.size(); ++i) {
         if (way[i].modelled && !(flanks[0].fit.whole && flanks[1].fit.whole)) {
             continue;
@@ -91,7 +103,7 @@ SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration,
         settle(way[i], i, flanks);
         double variance = 0;
         for (const std::size_t k : {0u, 1u}) {
-            variance += variance_across(way[i], i, k, flanks[k], shift[k][i], registration);
+            variance += variance_across(way[i], i, k, flanks[k], shift[k][i]);
         }
         way[i].sigma = std::sqrt(variance) / std::max(1e-6, std::sin(way[i].bend));
     }
@@ -100,6 +112,21 @@ SeamSurfaces settle_on_whole_flanks(const Tracker& tracker, double registration,
         return PooledFlank{&flank.pool, fit.nearest ? &*fit.nearest : nullptr, fit.whole.has_value()};
     };
     return joint_surfaces({pooled(flanks[0]), pooled(flanks[1])}, registration, least_scale);
+}
+
+}  // namespace
+
+std::vector<SeamSurfaces> settle_on_whole_flanks(std::span<const MeasuredWay> ways, double registration) {
+    std::vector<SeamSurfaces> surfaces;
+    if (ways.empty()) {
+        return surfaces;
+    }
+    const ViewShifts shifts(ways, registration);
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+        take_back(ways[w].tracker, shifts, 2 * w, *ways[w].places);
+        surfaces.push_back(settle_way(ways[w].tracker, shifts, 2 * w, registration, *ways[w].places));
+    }
+    return surfaces;
 }
 
 }  // namespace seampath::detail

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <unordered_map>
 
 #include "stages/geometry/robust.hpp"
@@ -16,6 +17,7 @@ constexpr std::size_t kSampled = 200;      // of a chunk's points
 constexpr double kCells = 120;             // along the scan's extent
 constexpr std::size_t kBehind = 30;        // chunks; rows of the latest ones share their cells
 constexpr double kReturned = 0.5;          // share of a chunk's points that tells of the next view
+constexpr std::size_t kSpan = 3;           // chunks whose mean tells where a view looks
 
 // Integer coordinates of cells, packed.
 class Cells {
@@ -48,30 +50,85 @@ private:
     double size_;
 };
 
+/// Points that follow each other in the scan, a chunk at a time: the cells that they lie in, and their middle.
+struct Chunk {
+    std::vector<std::uint64_t> cells;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+};
+
+std::vector<Chunk> chunks_of(std::span<const Eigen::Vector3f> points, std::size_t size) {
+    const Cells cells(points);
+    const std::size_t stride = 1 + size / kSampled;
+    std::vector<Chunk> chunks;
+    for (std::size_t begin = 0; begin < points.size(); begin += size) {
+        Chunk& chunk = chunks.emplace_back();
+        for (std::size_t i = begin; i < std::min(points.size(), begin + size); i += stride) {
+            chunk.cells.push_back(cells.key(points[i]));
+            chunk.middle += points[i].cast<double>();
+        }
+        chunk.middle /= static_cast<double>(chunk.cells.size());
+    }
+    return chunks;
+}
+
+// The chunks, ascending, with which another view begins at the latest (forwards) or at the earliest (backwards).
+std::vector<std::size_t> returns_of(const std::vector<Chunk>& chunks, bool backwards) {
+    std::vector<std::size_t> starts;
+    std::unordered_map<std::uint64_t, std::size_t> seen;  // step at which the view first came to a cell
+    for (std::size_t step = 0; step < chunks.size(); ++step) {
+        const std::size_t at = backwards ? chunks.size() - 1 - step : step;
+        std::size_t returned = 0;
+        for (const std::uint64_t cell : chunks[at].cells) {
+            const auto found = seen.find(cell);
+            returned += found != seen.end() && found->second + kBehind < step;
+        }
+        if (static_cast<double>(returned) > kReturned * static_cast<double>(chunks[at].cells.size())) {
+            starts.push_back(backwards ? at + 1 : at);
+            seen.clear();
+        }
+        for (const std::uint64_t cell : chunks[at].cells) {
+            seen.try_emplace(cell, step);
+        }
+    }
+    std::sort(starts.begin(), starts.end());
+    return starts;
+}
+
+// How far the view's look jumps where a chunk begins.
+double jump_at(const std::vector<Chunk>& chunks, std::size_t at) {
+    Eigen::Vector3d before = Eigen::Vector3d::Zero(), after = before;
+    for (std::size_t i = 0; i < kSpan; ++i) {
+        before += chunks[at - 1 - i].middle;
+        after += chunks[at + i].middle;
+    }
+    return (after - before).norm();
+}
+
 }  // namespace
 
+// A view that begins with places which the one before it did not see is noticed late; read backwards, its end is
+// noticed early. Between the two it begins where the look jumps from the last row to the first.
 std::vector<std::size_t> view_starts(std::span<const Eigen::Vector3f> points) {
     std::vector<std::size_t> starts{0};
     if (points.size() < 4 * kBehind * kLeastInChunk) {
         return starts;
     }
-    const std::size_t size = std::max(kLeastInChunk, points.size() / kMostChunks), stride = 1 + size / kSampled;
-    const Cells cells(points);
-    std::unordered_map<std::uint64_t, std::size_t> seen;  // chunk in which the view first came to a cell
-    for (std::size_t chunk = 0; chunk * size < points.size(); ++chunk) {
-        std::size_t sampled = 0, returned = 0;
-        const std::size_t begin = chunk * size, end = std::min(points.size(), begin + size);
-        for (std::size_t i = begin; i < end; i += stride, ++sampled) {
-            const auto found = seen.find(cells.key(points[i]));
-            returned += found != seen.end() && found->second + kBehind < chunk;
+    const std::size_t size = std::max(kLeastInChunk, points.size() / kMostChunks);
+    const std::vector<Chunk> chunks = chunks_of(points, size);
+    const std::vector<std::size_t> earliest = returns_of(chunks, true);
+    std::size_t last = 0;
+    for (const std::size_t latest : returns_of(chunks, false)) {
+        const auto before = std::upper_bound(earliest.begin(), earliest.end(), latest);
+        std::size_t start = std::max(before == earliest.begin() ? 0 : *std::prev(before), last + kSpan);
+        double most = 0;
+        for (std::size_t at = start; at <= latest && at + kSpan <= chunks.size(); ++at) {
+            if (const double jump = jump_at(chunks, at); jump > most) {
+                most = jump;
+                start = at;
+            }
         }
-        if (static_cast<double>(returned) > kReturned * static_cast<double>(sampled)) {
-            starts.push_back(begin);
-            seen.clear();
-        }
-        for (std::size_t i = begin; i < end; i += stride) {
-            seen.try_emplace(cells.key(points[i]), chunk);
-        }
+        starts.push_back(start * size);
+        last = start;
     }
     return starts;
 }

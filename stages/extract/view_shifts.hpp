@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stages/extract/track.hpp"
+
+/// By how much each view is shifted, told from all flanks of a scan together, and what of it stays unknown.
+namespace seampath::detail {
+
+/// Shares that the views have in a measured place of a flank: how far the place moves when a view moves, by axis, and
+/// when what the view shows of this one flank moves along the normal.
+struct ViewShares {
+    Eigen::VectorXd by_axis;    ///< 3 numbers a view
+    Eigen::VectorXd by_normal;  ///< 1 number a view
+};
+
+/// Of place i of a way, across flank k: measured by straight lines through the points about it, over their distances
+/// from the seam; by their mean, where it is a wall whose angle is known.
+ViewShares shares_of_window(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t i, std::size_t k);
+
+/// The places of a seam, and with what they were measured.
+struct MeasuredWay {
+    Tracker tracker;
+    std::vector<TrackPoint>* places;
+};
+
+/// A mixed linear model (Henderson 1975) of the mean distances at which views lie off each flank's surface, stretch by
+/// stretch: each view has a shift of its own, normal with a common variance along each axis, and shows each flank off
+/// it by a bias of its own; where the flank truly lies is free on every stretch. How the variance of what views differ
+/// by is divided between shifts and biases, and how much more than white the noise is, is what makes the scan most
+/// likely. Shifts that all views have in common are in no scan: they stay as unknown as before.
+class ViewShifts {
+public:
+    /// Flank k of way w is number 2 w + k. `registration` (mm): 1-sigma of shift and bias together; 0: there are none.
+    ViewShifts(std::span<const MeasuredWay> ways, double registration);
+
+    std::size_t views() const { return views_; }
+
+    /// The most likely shift, mm, of a view's points on a flank whose normal is `n`.
+    Eigen::Vector3d of(std::size_t flank, std::size_t view, const Eigen::Vector3d& n) const;
+    /// The same of a place with these shares, along the normal.
+    double of(std::size_t flank, const ViewShares& shares) const;
+    /// Variance of that, mm^2.
+    double variance(std::size_t flank, const ViewShares& shares) const;
+
+private:
+    struct Flank;
+    double settle(const std::vector<Flank>& flanks, double shift_variance, double noise, double bias);
+
+    std::size_t views_ = 1;
+    Eigen::VectorXd shift_;             ///< 3 numbers a view
+    Eigen::MatrixXd shift_covariance_;  ///< of them
+    struct Bias {
+        Eigen::VectorXd value;       ///< 1 number a view
+        Eigen::MatrixXd covariance;  ///< of them where the shifts are known
+        Eigen::MatrixXd by_shift;    ///< what a change of the shifts changes of them, with the sign turned
+    };
+    std::vector<Bias> bias_;  ///< of each flank; empty without registration
+};
+
+/// Moves the points of all slabs back by their views' shifts, and each place with them. `first` is the number of the
+/// way's first flank.
+void take_back(const Tracker& tracker, const ViewShifts& shifts, std::size_t first, std::vector<TrackPoint>& way);
+
+}  // namespace seampath::detail
