@@ -5,6 +5,7 @@
 #include "pipeline/report_checks.hpp"
 #include "pipeline/report_sections.hpp"
 #include "pipeline/report_torch.hpp"
+#include "stages/angle.hpp"
 #include "stages/plan/plan.hpp"
 #include "tests/report/example_part.hpp"
 
