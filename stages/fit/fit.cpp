@@ -10,7 +10,6 @@
 #include "stages/fit/interpolated.hpp"
 #include "stages/fit/saddle_model.hpp"
 #include "stages/geometry/bspline.hpp"
-#include "stages/geometry/corners.hpp"
 #include "stages/geometry/smoothed.hpp"
 #include "stages/text.hpp"
 
@@ -113,7 +112,7 @@ Normals fit_curve(const Seam& seam, const Nodes& nodes, const FitOptions& option
         model.degrees_of_freedom = 3 * line.freedom;
         return averaged_normals(seam);
     }
-    const FittedCurve smooth = smooth_pieces(points, seam.closed);
+    const FittedCurve smooth = smooth_points(points, seam.closed);
     if (options.model != FitModel::spline) {
         const bool asked = options.model == FitModel::saddle;
         std::variant<SaddleModel, NoSaddle> result =

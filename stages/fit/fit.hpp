@@ -75,9 +75,7 @@ bool sets_nodes(FitModel model);
 /// seam is closed. Points count with 1/sigma^2, of which only the ratios matter unless the points scatter less than
 /// stated; single points that are off from their neighbours don't count. Distances are orthogonal. How stiff the curve
 /// is, and where, is chosen from the points (smoothing.hpp), knots are as dense as the freedom that it turns out to
-/// have. The nodes are not needed: every point takes part. Time is O(points). A seam with sharp corners is made of such
-/// pieces from corner to corner (corners.hpp); the knots there are triple. SeamModel::band follows from the spline's
-/// posterior covariance (pspline.hpp), the scatter of the points, and what of their stated sigma that does not show.
+/// have. The nodes are not needed: every point takes part. Time is O(points).
 ///
 /// All others pass the nodes, each coordinate interpolated over arc length along the seam's points or along an axis;
 /// `parametric` is the natural spline, of a closed seam the periodic one, over Marin's parameters (parametrize.hpp).
