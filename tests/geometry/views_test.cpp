@@ -1,5 +1,7 @@
 #include "stages/geometry/views.hpp"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,10 +14,11 @@ namespace views_test {
 using Eigen::Vector3d;
 using testing::ElementsAre;
 
-/// A view of a corner, row by row along x, as far as `to`.
-void add_view(std::vector<Eigen::Vector3f>& points, double to, std::uint64_t seed) {
+/// A view of a corner, row by row along x, from one place to another on either side.
+void add_view(std::vector<Eigen::Vector3f>& points, double from, double to, std::uint64_t seed) {
     const Sampling sampling{0.4, 0.03, seed};
-    for (double x = 0; x < to; x += 0.4) {
+    for (double along = 0; along < std::abs(to - from); along += 0.4) {
+        const double x = to > from ? from + along : from - along;
         add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.4, Vector3d::UnitY(), 30, sampling);
         add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.4, Vector3d::UnitZ(), 30, sampling);
     }
@@ -26,7 +29,7 @@ TEST(Views, BeginWherePointsComeBack) {
     std::vector<std::size_t> begin;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         begin.push_back(points.size());
-        add_view(points, seed == 3 ? 50 : 80, seed);
+        add_view(points, 0, seed == 3 ? 50 : 80, seed);
     }
     const auto starts = view_starts(points);
     ASSERT_EQ(starts.size(), begin.size());
@@ -35,9 +38,23 @@ TEST(Views, BeginWherePointsComeBack) {
     }
 }
 
+// The second view sees 50 mm that are new before it comes to what the first one saw, and the third begins likewise.
+TEST(Views, BeginWhereTheLookJumpsToPlacesNotSeenBefore) {
+    std::vector<Eigen::Vector3f> points;
+    add_view(points, 0, 60, 1);
+    const std::size_t second = points.size();
+    add_view(points, 110, 20, 2);
+    const std::size_t third = points.size();
+    add_view(points, 150, 60, 3);
+    const auto starts = view_starts(points);
+    ASSERT_EQ(starts.size(), 3u);
+    EXPECT_NEAR(static_cast<double>(starts[1]), static_cast<double>(second), 600);  // four rows
+    EXPECT_NEAR(static_cast<double>(starts[2]), static_cast<double>(third), 600);
+}
+
 TEST(Views, OneViewIsOne) {
     std::vector<Eigen::Vector3f> points;
-    add_view(points, 80, 1);
+    add_view(points, 0, 80, 1);
     EXPECT_THAT(view_starts(points), ElementsAre(0));
     EXPECT_THAT(view_starts({}), ElementsAre(0));
     EXPECT_THAT(view_starts(std::vector<Eigen::Vector3f>(5000, Eigen::Vector3f::Zero())).front(), 0u);
