@@ -248,6 +248,48 @@ TEST(ArmTravel, RollsWhereOneRollWontDo) {
     EXPECT_NEAR(result.duration_s, before.duration_s, 1e-6);
 }
 
+// A wrist that bends a degree less than the planned torch asks of it: leaned ahead or back, it need not.
+TEST(ArmTravel, ChangesTheTravelAngleWhereThatHelps) {
+    const SeamModel model = test::model_of(test::line(120), false, 4);
+    ArmCell cell = cell_with("abb-irb-1600-8-1.45", at(850, 0, 200));
+    PlanOptions options;
+    options.arm_roll_deg = 0;
+    const Plan free = plan({&model, 1}, options, cell);
+    ASSERT_TRUE(free.arm->pass) << free.arm->verdict;
+    double bend = 0;
+    for (const ArmSample& s : free.arm->samples) {
+        bend = std::max(bend, std::abs(s.q[4]));
+    }
+    std::string text = load_arm("abb-irb-1600-8-1.45").text;
+    const std::string limits = "lower=\"-2.007128639793479\" upper=\"2.007128639793479\"";
+    ASSERT_NE(text.find(limits), std::string::npos);
+    const std::string least = std::to_string(bend - kDegree);
+    text.replace(text.find(limits), limits.size(), "lower=\"-" + least + "\" upper=\"" + least + "\"");
+    cell.arm = arm_from_urdf(text, "stiff.urdf");
+    EXPECT_FALSE(plan({&model, 1}, options, cell).arm->pass);
+    options.arm_travel_angle_deg = 20;
+    const Plan result = plan({&model, 1}, options, cell);
+    ASSERT_TRUE(result.arm->pass) << result.arm->verdict;
+    expect_laws(result, cell, options);
+    for (const TravelSample& s : result.travel) {
+        EXPECT_GE(std::abs(s.travel_rad), 5 * kDegree - 1e-9);
+        EXPECT_LE(std::abs(s.travel_rad), 20 * kDegree + 1e-9);
+    }
+}
+
+TEST(ArmTravel, LeadsBelongToTheWay) {
+    const SeamModel model = test::model_of(test::line(120), false, 4);
+    const ArmCell cell = cell_with("abb-irb-1600-8-1.45", at(850, 0, 200));
+    PlanOptions options;
+    options.lead_in_mm = 15;
+    options.lead_out_mm = 10;
+    const Plan result = plan({&model, 1}, options, cell);
+    ASSERT_TRUE(result.arm->pass) << result.arm->verdict;
+    expect_laws(result, cell, options);
+    EXPECT_EQ(result.arm->samples.front().waypoint, 0);
+    EXPECT_EQ(result.arm->samples.back().waypoint, static_cast<int>(result.waypoints.size()) - 1);
+}
+
 TEST(ArmTravel, RefusesMoreThanTheAxesCanAccelerate) {
     const SeamModel model = test::model_of(test::circle(20), true, 64);
     const ArmCell cell = cell_with("abb-irb-1600-6-1.2", at(750, 0, 200));

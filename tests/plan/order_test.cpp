@@ -98,6 +98,44 @@ TEST(Order, OfManySeamsInARowGoesFromEndToEnd) {
     EXPECT_GT(air_way(plan(models, {}).waypoints), 19 * 30 * 5);
 }
 
+// Of seams at random places no run turned round and no seam moved elsewhere would make the way shorter.
+TEST(Order, OfManySeamsNoExchangeIsShorter) {
+    std::mt19937 generator(8);
+    std::uniform_real_distribution<double> at(0, 900);
+    std::vector<SeamModel> models;
+    for (int k = 0; k < 20; ++k) {
+        models.push_back(line_at({at(generator), at(generator), 0}, at(generator), 30));
+    }
+    PlanOptions options;
+    options.order = SeamOrder::shortest;
+    std::vector<std::pair<Vector3d, Vector3d>> ends;
+    for (const Waypoint& w : plan(models, options).waypoints) {
+        if (w.kind == WaypointKind::approach) {
+            ends.emplace_back(w.p, w.p);
+        }
+        ends.back().second = w.kind == WaypointKind::retract ? w.p : ends.back().second;
+    }
+    ASSERT_EQ(ends.size(), 20u);
+    const auto way = [](const auto& row) {
+        double sum = 0;
+        for (std::size_t k = 1; k < row.size(); ++k) {
+            sum += (row[k].first - row[k - 1].second).norm();
+        }
+        return sum;
+    };
+    const double found = way(ends);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        for (std::size_t k = i + 1; k < ends.size(); ++k) {
+            const auto from = static_cast<std::ptrdiff_t>(i), to = static_cast<std::ptrdiff_t>(k) + 1;
+            auto turned = ends, later = ends, sooner = ends;
+            std::reverse(turned.begin() + from, turned.begin() + to);
+            std::rotate(later.begin() + from, later.begin() + from + 1, later.begin() + to);
+            std::rotate(sooner.begin() + from, sooner.begin() + to - 1, sooner.begin() + to);
+            EXPECT_GE(std::min({way(turned), way(later), way(sooner)}), found - 1e-6) << i << " " << k;
+        }
+    }
+}
+
 TEST(Order, ClosedSeamsBeginWhereTheWayIsShort) {
     const auto ring = [](double x) {
         Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
