@@ -224,6 +224,15 @@ DepthCapture depth_capture(const Json& root, const fs::path& folder, std::vector
     return capture;
 }
 
+PhotoCapture photo_capture(const Json& root, const fs::path& folder, std::vector<std::string>& problems) {
+    const CaptureObject object(root, "", problems, {"kind", "camera", "image", "camera_from_plane"});
+    PhotoCapture capture;
+    capture.camera = camera_from(object.member("camera"), problems);
+    capture.image = image_from(object, folder);
+    capture.camera_from_plane = pose_from(object, "camera_from_plane");
+    return capture;
+}
+
 }  // namespace
 
 bool is_capture(const fs::path& file) {
@@ -245,9 +254,11 @@ Capture read_capture(const fs::path& file) {
         capture = stripe_capture(root, file.parent_path(), problems);
     } else if (kind == "depth") {
         capture = depth_capture(root, file.parent_path(), problems);
+    } else if (kind == "photo") {
+        capture = photo_capture(root, file.parent_path(), problems);
     } else {
         problems.push_back("/kind: " + (kind.is_null() ? "is missing" : json_excerpt(kind) + " is no kind of capture") +
-                           "; \"laser_stripe\" or \"depth\" was needed");
+                           "; \"laser_stripe\", \"depth\" or \"photo\" was needed");
     }
     std::string lines;
     for (const std::string& problem : problems) {
@@ -257,6 +268,14 @@ Capture read_capture(const fs::path& file) {
         throw InputError(lines);
     }
     return capture;
+}
+
+std::vector<fs::path> images_of(const Capture& capture) {
+    if (const auto* stripes = std::get_if<StripeCapture>(&capture)) {
+        return stripes->images;
+    }
+    const auto* depth = std::get_if<DepthCapture>(&capture);
+    return {depth ? depth->image : std::get<PhotoCapture>(capture).image};
 }
 
 }  // namespace seampath

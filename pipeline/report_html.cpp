@@ -263,7 +263,7 @@ std::string data_script(std::string_view id, const std::string& json) {
 
 }  // namespace
 
-std::string report_html(const PartResult& part) {
+std::string report_html(const PartResult& part, const std::vector<ReportImage>& images) {
     const Report report = report_of(part);
     const ViewScene scene = view_scene(part);
     std::string html =
@@ -271,7 +271,7 @@ std::string report_html(const PartResult& part) {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
         std::string(report.pass ? "PASS" : "FAIL") + " – " + escape_html(report.part) + " – Seampath</title>\n<style>" +
         std::string(report_style()) + "</style></head>\n<body>\n" + header(report) + "<main>\n" + key_figures(report) +
-        view_section(scene) + seam_table(report);
+        view_section(scene) + image_section(images) + seam_table(report);
     if (!report.seams.empty()) {
         html += "<h2>Seam by seam</h2>";
     }

@@ -90,13 +90,15 @@ void plan_and_export(PartResult& part, Walk& walk, const Cell& cell, const std::
         export_summary);
 }
 
-/// From the scan to the programs, stage by stage.
-void walk_stages(PartResult& part, Walk& walk) {
+/// From the scan, or the photograph where there is one, to the programs, stage by stage.
+void walk_stages(PartResult& part, Walk& walk, const std::optional<PhotoView>& photo = {}) {
     const Config& config = part.config;
     const Cell cell = cell_of(config);  // what is wrong with an arm shows before the work
     const auto& seams = part.extraction.seams;
     walk.stage(
-        "extract", part.extraction, [&] { return extract(part.scan, config.extract); }, extract_summary);
+        "extract", part.extraction,
+        [&] { return photo ? extract_photo(*photo, config.extract.joint) : extract(part.scan, config.extract); },
+        extract_summary);
 
     const auto place_seam = [&](std::size_t i) { return place(seams[i], config.place); };
     walk.stage(
@@ -106,7 +108,10 @@ void walk_stages(PartResult& part, Walk& walk) {
     walk.stage(
         "fit", part.models, [&] { return walk.each(seams.size(), fit_seam); }, fit_summary);
 
-    const auto validate_seam = [&](std::size_t i) { return validate(part.models[i], part.scan, config.validate); };
+    const auto validate_seam = [&](std::size_t i) {
+        return photo ? validate(part.models[i], *photo, config.validate)
+                     : validate(part.models[i], part.scan, config.validate);
+    };
     walk.stage(
         "validate", part.deviations, [&] { return walk.each(seams.size(), validate_seam); }, validate_summary);
 
@@ -125,7 +130,7 @@ void remove_products(const RunFolder& folder) {
     }
 }
 
-void write_products(const PartResult& part, const Walk& walk) {
+void write_products(const PartResult& part, const Walk& walk, const std::vector<ReportImage>& images = {}) {
     if (!part.nominal) {
         walk.write("seam_points.csv", seam_points_csv(part.extraction.seams));
         const std::string grooves = groove_csv(part.extraction.seams);
@@ -150,7 +155,7 @@ void write_products(const PartResult& part, const Walk& walk) {
         walk.write(fs::path("programs") / robot / "manifest.json", manifest_json(part.programs, robot));
     }
     walk.write("report.json", report_json(part));
-    walk.write("report.html", report_html(part));
+    walk.write("report.html", report_html(part, images));
 }
 
 }  // namespace
@@ -177,12 +182,12 @@ PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config
     walk.write("config.resolved.json", config_json(config));
     walk.keep("read",
               encode(part.scan, ScanRecord{fs::relative(scan_file, folder.path()).generic_string(), file_sha256}));
-    walk_stages(part, walk);
+    walk_stages(part, walk, input.photo);
     for (std::string& sentence : compare_with_profiles(input, part.extraction.seams)) {
         part.extraction.remarks.push_back(std::move(sentence));
     }
     walk.always(
-        "report", [&] { write_products(part, walk); }, report_summary);
+        "report", [&] { write_products(part, walk, report_images(input, part.extraction.seams)); }, report_summary);
     return part;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "stages/geometry/photo_view.hpp"
 #include "stages/options.hpp"
 #include "stages/types.hpp"
 
@@ -13,5 +14,11 @@ Fields describe(ValidateOptions&);
 
 /// Deviation of the model from the raw scan's two flank surfaces, and the verdict.
 Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options);
+
+/// Deviation of the model from the seam as the photograph's own grey values show it, station by station: the middle of
+/// the line's two edges, where the grey is half way between the line's and each side's. That knows nothing of ridges or
+/// of how the seam was found. Stations where no line stands out, or that are bridged, are not covered. It tells whether
+/// the model lies on a line of the photograph, not whether that line is the seam.
+Deviation validate(const SeamModel& model, const PhotoView& view, const ValidateOptions& options);
 
 }  // namespace seampath
