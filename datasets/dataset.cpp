@@ -8,6 +8,7 @@
 #include "datasets/portable_math.hpp"
 #include "datasets/rng.hpp"
 #include "stages/error.hpp"
+#include "stages/geometry/parallel.hpp"
 
 namespace seampath {
 namespace {
@@ -43,7 +44,7 @@ Dataset make_dataset(const SceneOptions& scene, const ScannerOptions& scanner, s
     const Scene made = make_scene(dataset.scene);
     dataset.truth = transformed(made.truth, dataset.scan_from_scene);
     if (threads == 0) {
-        threads = std::max(1U, std::thread::hardware_concurrency());
+        threads = usable_processors();
     }
     for (int i = 0; i < scanner.views; ++i) {
         const View view = take_view(made, scanner, seed, i, threads);

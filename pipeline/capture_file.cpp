@@ -68,6 +68,15 @@ DepthCapture depth_capture(const Json& root, const fs::path& folder, std::vector
     return capture;
 }
 
+PhotoCapture photo_capture(const Json& root, const fs::path& folder, std::vector<std::string>& problems) {
+    const JsonObject object(root, "", problems, {"kind", "camera", "image", "camera_from_plane"});
+    PhotoCapture capture;
+    capture.camera = camera_from(object.member("camera"), "/camera", problems);
+    capture.image = image_from(object, folder);
+    capture.camera_from_plane = pose_from(object, "camera_from_plane");
+    return capture;
+}
+
 }  // namespace
 
 bool is_capture(const fs::path& file) {
@@ -82,14 +91,24 @@ Capture read_capture(const fs::path& file) {
             capture = stripe_capture(root, file.parent_path(), problems);
         } else if (kind == "depth") {
             capture = depth_capture(root, file.parent_path(), problems);
+        } else if (kind == "photo") {
+            capture = photo_capture(root, file.parent_path(), problems);
         } else {
             problems.push_back(
                 "/kind: " + (kind.is_null() ? "is missing" : json_excerpt(kind) + " is no kind of capture") +
-                "; \"laser_stripe\" or \"depth\" was needed");
+                "; \"laser_stripe\", \"depth\" or \"photo\" was needed");
         }
     };
     read_json_file(file, kMaxCaptureBytes, "read", "a capture file was expected", take);
     return capture;
+}
+
+std::vector<fs::path> images_of(const Capture& capture) {
+    if (const auto* stripes = std::get_if<StripeCapture>(&capture)) {
+        return stripes->images;
+    }
+    const auto* depth = std::get_if<DepthCapture>(&capture);
+    return {depth ? depth->image : std::get<PhotoCapture>(capture).image};
 }
 
 }  // namespace seampath

@@ -20,6 +20,9 @@
 ///
 ///     { "kind": "depth", "camera": ..., "image": "depth.png", "mm_per_unit": 0.1,
 ///       "base_from_camera": [x, y, z, qw, qx, qy, qz] }                      (without it the camera is the base)
+///
+///     { "kind": "photo", "camera": ..., "image": "joint.jpg",                (PNG or JPEG)
+///       "camera_from_plane": [x, y, z, qw, qx, qy, qz] }                     (the joint is on the plane's z = 0)
 namespace seampath {
 
 /// A laser line in a sequence of pictures, all of one camera.
@@ -38,7 +41,17 @@ struct DepthCapture {
     Eigen::Isometry3d base_from_camera = Eigen::Isometry3d::Identity();
 };
 
-using Capture = std::variant<StripeCapture, DepthCapture>;
+/// A photograph of a flat joint.
+struct PhotoCapture {
+    CameraModel camera;
+    std::filesystem::path image;
+    Eigen::Isometry3d camera_from_plane = Eigen::Isometry3d::Identity();
+};
+
+using Capture = std::variant<StripeCapture, DepthCapture, PhotoCapture>;
+
+/// All pictures that a capture names.
+std::vector<std::filesystem::path> images_of(const Capture& capture);
 
 /// Whether a file is taken for a capture: by its name, which ends in .json.
 bool is_capture(const std::filesystem::path& file);

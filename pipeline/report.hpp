@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "pipeline/report_image.hpp"
 #include "pipeline/result.hpp"
 
 namespace seampath {
@@ -16,6 +17,7 @@ std::string report_json(const PartResult& part);
 /// <script id="report">), a 3D view of scan, seams, nodes and torch, and plots. Cells that show a number carry the path
 /// of its row in report.json as data-row and the unrounded value as data-value. Without WebGL or scripts it shows a
 /// still picture instead of the 3D view. `#hide=scan,nodes` in the address opens the page with those layers off.
-std::string report_html(const PartResult& part);
+/// `images`: pictures that the part was measured in.
+std::string report_html(const PartResult& part, const std::vector<ReportImage>& images = {});
 
 }  // namespace seampath

@@ -186,12 +186,12 @@ std::string stage_table(const Report& report) {
 
 }  // namespace
 
-std::string report_html(const PartResult& part) {
+std::string report_html(const PartResult& part, const std::vector<ReportImage>& images) {
     const Report report = report_of(part);
     const ViewScene scene = view_scene(part);
     std::string html = page_head(std::string(report.pass ? "PASS" : "FAIL") + " – " + report.part + " – Seampath") +
                        header(report) + "<main>\n" + identity_section(part, report) + key_figures(report) +
-                       view_section(scene) + seam_table(report);
+                       view_section(scene) + image_section(images) + seam_table(report);
     if (!report.seams.empty()) {
         html += "<h2>Seam by seam</h2>";
     }

@@ -106,13 +106,15 @@ void plan_and_export(PartResult& part, Walk& walk, const Cell& cell, const std::
         export_summary);
 }
 
-/// From the scan to the programs, stage by stage.
-void walk_stages(PartResult& part, Walk& walk) {
+/// From the scan, or the photograph where there is one, to the programs, stage by stage.
+void walk_stages(PartResult& part, Walk& walk, const std::optional<PhotoView>& photo = {}) {
     const Cell cell = cell_of(part.config);  // what is wrong with arm or fixture shows before the work
     const Config& config = part.config;
     const auto& seams = part.extraction.seams;
     walk.stage(
-        "extract", part.extraction, [&] { return extract(part.scan, config.extract); }, extract_summary);
+        "extract", part.extraction,
+        [&] { return photo ? extract_photo(*photo, config.extract.joint) : extract(part.scan, config.extract); },
+        extract_summary);
 
     const auto place_seam = [&](std::size_t i) { return place(seams[i], config.place); };
     walk.stage(
@@ -122,7 +124,10 @@ void walk_stages(PartResult& part, Walk& walk) {
     walk.stage(
         "fit", part.models, [&] { return walk.each(seams.size(), fit_seam); }, fit_summary);
 
-    const auto validate_seam = [&](std::size_t i) { return validate(part.models[i], part.scan, config.validate); };
+    const auto validate_seam = [&](std::size_t i) {
+        return photo ? validate(part.models[i], *photo, config.validate)
+                     : validate(part.models[i], part.scan, config.validate);
+    };
     walk.stage(
         "validate", part.deviations, [&] { return walk.each(seams.size(), validate_seam); }, validate_summary);
 
@@ -141,7 +146,7 @@ void remove_products(const RunFolder& folder) {
     }
 }
 
-void write_products(const PartResult& part, const Walk& walk) {
+void write_products(const PartResult& part, const Walk& walk, const std::vector<ReportImage>& images = {}) {
     if (!part.nominal) {
         walk.write("seam_points.csv", seam_points_csv(part.extraction.seams));
         const std::string grooves = groove_csv(part.extraction.seams);
@@ -166,7 +171,7 @@ void write_products(const PartResult& part, const Walk& walk) {
         walk.write(fs::path("programs") / robot / "manifest.json", manifest_json(part.programs, robot));
     }
     walk.write("report.json", report_json(part));
-    walk.write("report.html", report_html(part));
+    walk.write("report.html", report_html(part, images));
 }
 
 }  // namespace
@@ -194,12 +199,12 @@ PartResult run_part(const fs::path& scan_file, const fs::path& out, const Config
     walk.write("config.resolved.json", config_json(config));
     walk.keep("read",
               encode(part.scan, ScanRecord{fs::relative(scan_file, folder.path()).generic_string(), file_sha256}));
-    walk_stages(part, walk);
+    walk_stages(part, walk, input.photo);
     for (std::string& sentence : compare_with_profiles(input, part.extraction.seams)) {
         part.extraction.remarks.push_back(std::move(sentence));
     }
     walk.always(
-        "report", [&] { write_products(part, walk); }, report_summary);
+        "report", [&] { write_products(part, walk, report_images(input, part.extraction.seams)); }, report_summary);
     return part;
 }
 

@@ -9,6 +9,7 @@
 #include "stages/depth/depth.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/parallel.hpp"
+#include "stages/photo/photo.hpp"
 #include "stages/picture/picture.hpp"
 #include "stages/text.hpp"
 
@@ -20,9 +21,11 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kMaxPictureBytes = std::size_t{1} << 30;
 
+using Decoder = GreyImage (*)(std::string_view bytes, const std::string& name);
+
 /// A picture of the camera's size.
-GreyImage picture_of(const fs::path& file, const CameraModel& camera) {
-    GreyImage image = decode_picture(read_file(file, kMaxPictureBytes, "read"), file.string());
+GreyImage picture_of(const fs::path& file, const CameraModel& camera, Decoder decode = decode_picture) {
+    GreyImage image = decode(read_file(file, kMaxPictureBytes, "read"), file.string());
     if (image.width != camera.width || image.height != camera.height) {
         throw InputError("read: " + file.string() + ": is " + std::to_string(image.width) + " x " +
                          std::to_string(image.height) + " pixels, but its camera has " + std::to_string(camera.width) +
@@ -37,7 +40,7 @@ void check_not_black(const GreyImage& image, const fs::path& file) {
     const double brightest = *std::max_element(image.value.begin(), image.value.end());
     if (brightest <= black) {
         throw InputError("read: " + file.string() + ": is black: its brightest pixel is " + shortest(brightest) +
-                         " of " + shortest(image.white) + "; check the laser, the lens cap and the exposure");
+                         " of " + shortest(image.white) + "; check the light, the lens cap and the exposure");
     }
 }
 
@@ -79,6 +82,25 @@ ScanInput scan_of_depths(const DepthCapture& capture) {
     ScanInput input;
     input.scan = scan_of_depth(image, capture.camera, capture.mm_per_unit, capture.base_from_camera).scan;
     input.scan.format = "capture depth";
+    return input;
+}
+
+ScanInput scan_of_photo(const PhotoCapture& capture) {
+    constexpr int kSide = 200;  // points: what a photograph covers is a plane anyway
+    GreyImage image = picture_of(capture.image, capture.camera, decode_photograph);
+    check_not_black(image, capture.image);
+    ScanInput input;
+    const int step = std::max(1, std::max(image.width, image.height) / kSide);
+    for (int row = 0; row < image.height; row += step) {
+        for (int column = 0; column < image.width; column += step) {
+            const Vector3d p = point_on_plane(capture.camera, capture.camera_from_plane, Eigen::Vector2d(column, row));
+            input.scan.points.push_back(p.cast<float>());
+        }
+    }
+    input.scan.points_in_file = image.value.size();
+    input.scan.format = "capture photo";
+    input.scan.sensor_mm = capture.camera_from_plane.inverse().translation();
+    input.photo = PhotoView{std::move(image), capture.camera, capture.camera_from_plane};
     return input;
 }
 
@@ -127,14 +149,43 @@ std::string comparison(const ScanInput& input, const Seam& seam, std::size_t num
 
 ScanInput read_scan(const fs::path& file, const ReadOptions& options) {
     if (!is_capture(file)) {
-        return {read(file, options), {}, {}, {}, {}};
+        return {read(file, options), {}, {}, {}, {}, {}};
     }
     const Capture capture = read_capture(file);
-    const auto* stripes = std::get_if<StripeCapture>(&capture);
-    ScanInput input = stripes ? scan_of_stripes(*stripes, file) : scan_of_depths(std::get<DepthCapture>(capture));
+    ScanInput input;
+    if (const auto* stripes = std::get_if<StripeCapture>(&capture)) {
+        input = scan_of_stripes(*stripes, file);
+    } else if (const auto* depth = std::get_if<DepthCapture>(&capture)) {
+        input = scan_of_depths(*depth);
+    } else {
+        input = scan_of_photo(std::get<PhotoCapture>(capture));
+    }
     input.scan.name = file.stem().string();
     input.scan.unit_reason = "a capture is in mm";
     return input;
+}
+
+Extraction extract_photo(const PhotoView& photo, JointChoice joint) {
+    if (joint != JointChoice::automatic && joint != JointChoice::butt) {
+        throw InputError("extract: a photograph was given with the joint " +
+                         std::string(kJointChoiceNames[static_cast<std::size_t>(joint)]) +
+                         "; it shows butt joints of flat sheets only; use --joint butt or auto, or a scan");
+    }
+    Extraction found;
+    const Eigen::Vector2d middle(0.5 * photo.image.width, 0.5 * photo.image.height);
+    const auto at = [&](const Eigen::Vector2d& p) { return point_on_plane(photo.camera, photo.camera_from_plane, p); };
+    found.spacing_mm = (at(middle) - at(middle + Eigen::Vector2d::UnitX())).norm();
+    found.orientation_reason = "the torch comes from the camera's side of the plane";
+    const auto line = find_photo_line(photo.image);
+    if (!line) {
+        found.remarks.push_back("no line crosses the photograph from side to side");
+        return found;
+    }
+    found.seams.push_back(seam_on_plane(*line, photo.camera, photo.camera_from_plane));
+    found.remarks.push_back(
+        "the seam was found in a photograph: the deviation is from the line's own edges in it, and "
+        "tells nothing of heights, nor whether that line is the seam");
+    return found;
 }
 
 std::string scan_sha256(const fs::path& file) {
@@ -144,9 +195,7 @@ std::string scan_sha256(const fs::path& file) {
     }
     std::vector<fs::path> images;
     try {
-        const Capture capture = read_capture(file);
-        const auto* stripes = std::get_if<StripeCapture>(&capture);
-        images = stripes ? stripes->images : std::vector<fs::path>{std::get<DepthCapture>(capture).image};
+        images = images_of(read_capture(file));
     } catch (const InputError&) {
         return own;  // no scan of any run; what is wrong with it is told when it is read
     }

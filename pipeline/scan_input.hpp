@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "pipeline/capture_file.hpp"
+#include "stages/extract/extract.hpp"
+#include "stages/geometry/photo_view.hpp"
 #include "stages/read/read.hpp"
 #include "stages/types.hpp"
 
@@ -17,11 +19,16 @@ struct ScanInput {
     std::vector<Profile> profiles;  ///< one a picture, in the camera's frame; empty for other scans
     std::vector<Eigen::Isometry3d> base_from_camera;
     LaserPlane plane;
-    std::vector<float> sigma_mm;  ///< of each point where the sensor tells it; else empty
+    std::vector<float> sigma_mm;     ///< of each point where the sensor tells it; else empty
+    std::optional<PhotoView> photo;  ///< the scan then holds where some of its pixels lie on the plane, and no heights
 };
 
 /// Reads the file and what it names. Throws InputError.
 ScanInput read_scan(const std::filesystem::path& file, const ReadOptions& options);
+
+/// The seam of a photograph of a flat joint, in the plane's frame; none is a result. Throws InputError where the joint
+/// asked for is no butt joint.
+Extraction extract_photo(const PhotoView& photo, JointChoice joint);
 
 /// SHA-256 of the file; of a capture, of the file and all of its pictures. Throws InputError when one can't be read.
 std::string scan_sha256(const std::filesystem::path& file);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -7,14 +8,23 @@
 #include <thread>
 #include <vector>
 
+#include <sched.h>
+
 namespace seampath {
+
+/// Processors that this process may run on, at least 1. std::thread::hardware_concurrency() counts those of the machine
+/// also where the process is bound to some of them.
+inline unsigned usable_processors() {
+    cpu_set_t own;
+    return sched_getaffinity(0, sizeof own, &own) == 0 ? static_cast<unsigned>(std::max(1, CPU_COUNT(&own)))
+                                                       : std::max(1u, std::thread::hardware_concurrency());
+}
 
 /// Calls f(i) for i in [0, n) on all processors, in blocks of `block`. Deterministic as long as f(i) writes only to
 /// places that belong to i. The first exception is rethrown.
 template <class F>
 void parallel_for(std::size_t n, std::size_t block, F&& f) {
-    const std::size_t threads =
-        std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), (n + block - 1) / block);
+    const std::size_t threads = std::min<std::size_t>(usable_processors(), (n + block - 1) / block);
     std::atomic<std::size_t> next{0};
     std::exception_ptr failure;
     std::mutex failure_guard;

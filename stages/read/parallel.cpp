@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "stages/geometry/parallel.hpp"
+
 namespace seampath {
 
 void for_each_block(std::size_t blocks, const std::function<void(std::size_t)>& work) {
@@ -30,7 +32,7 @@ void for_each_block(std::size_t blocks, const std::function<void(std::size_t)>& 
             }
         }
     };
-    const std::size_t threads = std::min<std::size_t>({std::max(1U, std::thread::hardware_concurrency()), blocks, 16});
+    const std::size_t threads = std::min<std::size_t>({usable_processors(), blocks, 16});
     std::vector<std::jthread> helpers;
     try {
         while (helpers.size() + 1 < threads) {

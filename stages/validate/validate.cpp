@@ -14,16 +14,14 @@
 #include "stages/text.hpp"
 #include "stages/validate/flank_deviation.hpp"
 #include "stages/validate/groove_deviation.hpp"
+#include "stages/validate/verdict.hpp"
 
 namespace seampath {
 namespace {
 
 using detail::Ground;
 
-constexpr double kNoiseTolerance = 3;    // tolerance by default, in sigmas of a single scan point
 constexpr double kLeastTolerance = 0.1;  // mm; tracking accuracy that arc welding asks of a path
-constexpr double kWide = 0.5;            // mm; a default beyond it is more than the welds of thin plates can bear
-constexpr double kGuard = 2;             // sigmas of the measurement taken off the tolerance (ISO 14253-1)
 constexpr double kMostSigma = 3;         // of the seam's usual sigma; a weaker fit says nothing about the model
 constexpr double kGrooveReach = 40;      // mm; tops begin far from the root of a deep groove
 constexpr double kLeastDensity = 0.1;    // of the seam's usual density of flank points
@@ -114,41 +112,6 @@ std::optional<double> wall_height(const Ground& ground, const SeamModel& model, 
     return heights.empty() ? std::nullopt : std::optional(quantile(heights, 0.5));
 }
 
-void summarise(Deviation& result, const ValidateOptions& options) {
-    std::vector<double> distance;
-    double sum = 0, signed_sum = 0;
-    for (const DeviationSample& s : result.samples) {
-        if (s.covered) {
-            distance.push_back(s.distance_mm);
-            sum += s.distance_mm * s.distance_mm;
-            signed_sum += 0.5 * (s.flank1_mm + s.flank2_mm);
-        }
-    }
-    const auto n = static_cast<double>(distance.size());
-    result.coverage = result.samples.empty() ? 0 : n / static_cast<double>(result.samples.size());
-    if (!distance.empty()) {
-        result.signed_mean_mm = signed_sum / n;
-        result.rms_mm = std::sqrt(sum / n);
-        result.p50_mm = quantile(distance, 0.5);
-        result.p95_mm = quantile(distance, 0.95);
-        result.p997_mm = quantile(distance, 0.997);
-        result.max_mm = quantile(distance, 1);
-    }
-    const double guard = guard_mm(result), guarded = result.p997_mm + guard;
-    const bool covered = result.coverage >= options.min_coverage, inside = guarded <= result.tolerance_mm;
-    result.pass = covered && inside && !distance.empty();
-    result.verdict = std::string(result.pass ? "pass" : "fail") + ": p99.7 " + fixed(result.p997_mm, 3) +
-                     " mm + guard " + fixed(guard, 3) + " mm " + (inside ? "within" : "exceeds") +
-                     " tolerance " + fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
-                     " % of the seam measured" +
-                     (covered ? "" : ", less than " + fixed(100 * options.min_coverage, 1) + " %");
-    if (options.tolerance_mm == 0 && result.tolerance_mm > kWide) {
-        result.verdict += "; the tolerance is only what the scan's noise of " +
-                          fixed(result.tolerance_mm / kNoiseTolerance, 2) +
-                          " mm allows: set validate.tolerance_mm to what the weld needs";
-    }
-}
-
 }  // namespace
 
 Fields describe(ValidateOptions& o) {
@@ -156,16 +119,6 @@ Fields describe(ValidateOptions& o) {
         {"tolerance_mm", &o.tolerance_mm,
          "largest deviation that passes; 0: 3 sigmas of the scan's noise, at least 0.1 mm", at_least(0)},
         {"min_coverage", &o.min_coverage, "least share of the seam that must be measured, not bridged", within(0, 1)}};
-}
-
-double guard_mm(const Deviation& deviation) {
-    std::vector<double> sigma;
-    for (const DeviationSample& s : deviation.samples) {
-        if (s.covered) {
-            sigma.push_back(s.sigma_mm);
-        }
-    }
-    return kGuard * quantile(sigma, 0.5);
 }
 
 Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options) {
@@ -182,8 +135,8 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
     const auto count =
         std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
     Deviation result;
-    result.tolerance_mm =
-        options.tolerance_mm > 0 ? options.tolerance_mm : std::max(kLeastTolerance, kNoiseTolerance * scale.noise);
+    result.tolerance_mm = options.tolerance_mm > 0 ? options.tolerance_mm
+                                                   : std::max(kLeastTolerance, detail::kNoiseTolerance * scale.noise);
     result.samples.resize(count);
     // An organised cloud is one view.
     const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
@@ -209,7 +162,7 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
             model.kind == JointKind::lap ? wall_height(ground, model, arc) : std::nullopt;
         const double noise = detail::measure_flank_samples(ground, model, wall, result.samples, density);
         if (options.tolerance_mm == 0 && noise > 0) {
-            result.tolerance_mm = std::max(kLeastTolerance, kNoiseTolerance * std::min(noise, scale.noise));
+            result.tolerance_mm = std::max(kLeastTolerance, detail::kNoiseTolerance * std::min(noise, scale.noise));
         }
     }
     std::vector<double> sigma;
@@ -230,7 +183,7 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
             result.samples[i].covered = result.samples[i].covered && d[i] > least;
         }
     }
-    summarise(result, options);
+    detail::summarise(result, options);
     return result;
 }
 

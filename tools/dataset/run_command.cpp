@@ -16,6 +16,7 @@
 #include "pipeline/files.hpp"
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
+#include "stages/geometry/parallel.hpp"
 #include "tools/dataset/child_process.hpp"
 #include "tools/dataset/run_cases.hpp"
 #include "tools/dataset/suite_commands.hpp"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 struct SuiteArguments {
     std::string suite, out, shard, history, commit;
     std::vector<std::string> filter;
-    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    int jobs = static_cast<int>(usable_processors());
     bool resume = false, json = false;
 };
 
@@ -105,7 +106,7 @@ std::string machine_class() {
             break;
         }
     }
-    return std::string(system.machine) + ", " + std::to_string(std::thread::hardware_concurrency()) + " x " + model;
+    return std::string(system.machine) + ", " + std::to_string(usable_processors()) + " x " + model;
 }
 
 int status_of(CaseVerdict verdict) {
