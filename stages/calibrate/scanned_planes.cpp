@@ -95,7 +95,7 @@ bool within_face(const PlaneFace& face, const Vector3d& q, double border) {
     return left == all || right == all;
 }
 
-struct Field {
+struct PlaneField {
     Vector3d sum{0, 0, 0};
     std::size_t count = 0;
 };
@@ -106,7 +106,7 @@ FrameFeature feature_of_face(const Scan& scan, const PlaneFace& face, const Isom
     constexpr double kWidth = 4.685;
     const Isometry3d back = T.inverse();
     const double size = size_of_face(face), field = size / kFieldsAcross;
-    std::map<std::array<std::int64_t, 3>, Field> fields;
+    std::map<std::array<std::int64_t, 3>, PlaneField> fields;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
         const Vector3d p = scan.position(i), q = back * p;
         if (std::abs(face.normal.dot(q) - face.offset_mm) < kWidth * fit.scale_mm &&
