@@ -6,6 +6,7 @@
 
 #include "stages/calibrate/calibrate.hpp"
 #include "stages/error.hpp"
+#include "stages/geometry/robust.hpp"
 #include "stages/text.hpp"
 
 namespace seampath {
@@ -18,6 +19,7 @@ constexpr std::size_t kPlaneSamples = 100000;  // of all faces
 constexpr double kFieldsAcross = 6;            // of a face's longer side
 constexpr double kBorder = 0.03;               // of a face's size that is left out beside its edges
 constexpr std::size_t kFewestInField = 5;
+constexpr double kLeastFilled = 0.4;  // of the median field's points
 constexpr std::size_t kFewestFields = 3;
 
 double area_of_face(const PlaneFace& face) {
@@ -120,8 +122,14 @@ FrameFeature feature_of_face(const Scan& scan, const PlaneFace& face, const Isom
         }
     }
     FrameFeature feature{face.name, level, false, {}, {}};
+    std::vector<double> counts;
     for (const auto& [key, f] : fields) {
-        if (f.count >= kFewestInField) {
+        counts.push_back(static_cast<double>(f.count));
+    }
+    // What stands on the face crosses its plane: such fields hold few points, spread over the whole gate.
+    const double typical = quantile(counts, 0.5);
+    for (const auto& [key, f] : fields) {
+        if (f.count >= kFewestInField && static_cast<double>(f.count) > kLeastFilled * typical) {
             const double n = static_cast<double>(f.count);
             feature.rows.push_back(
                 {face.normal, face.offset_mm, f.sum / n, fit.scale_mm * std::sqrt(fit.correlation / n)});
