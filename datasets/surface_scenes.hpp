@@ -7,7 +7,8 @@
 #include "datasets/fixture_scenes.hpp"
 #include "datasets/part_mesh.hpp"
 
-/// Parts with known truth that stand among clutter on a table, seen once by a camera from above.
+/// Parts with known truth that stand among clutter on a table, seen once by a camera from
+/// above and from a corner, so that the sides of a part that stands square are seen, too.
 namespace seampath {
 
 /// The first six have one pose only; of the rest some direction is open, or several poses look alike.

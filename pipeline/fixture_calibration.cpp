@@ -167,10 +167,6 @@ FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::pat
         case FixtureMethod::planes:
             from_planes(read_touched_points(observations, c.nominal.sigma_mm), c);
             break;
-        case FixtureMethod::scanned_planes:
-            c.frame = calibrate_scanned_planes(read(observations, read_options), c.nominal.faces, c.nominal.work_points,
-                                               search_options(c.nominal));
-            break;
         case FixtureMethod::best_fit:
             from_surface(read(observations, read_options), c);
             break;

@@ -159,9 +159,8 @@ NamedPoint point_of(Object& object) {
     return {object.text("name", true), object.vector("p_mm")};
 }
 
-// What planes that are touched and planes that are scanned share.
-template <class AnyPlane>
-void read_plane(Object& object, AnyPlane& plane) {
+NominalPlane plane_of(Object& object) {
+    NominalPlane plane;
     plane.name = object.text("name", true);
     plane.normal = object.vector("normal");
     if (plane.normal.norm() > 0) {
@@ -170,18 +169,6 @@ void read_plane(Object& object, AnyPlane& plane) {
         object.problem("normal", "has no direction");
     }
     object.number("offset_mm", true, plane.offset_mm, -1e9);
-}
-
-PlaneFace face_of(Object& object) {
-    PlaneFace face;
-    read_plane(object, face);
-    face.corners = object.vectors("corners_mm");
-    return face;
-}
-
-NominalPlane plane_of(Object& object) {
-    NominalPlane plane;
-    read_plane(object, plane);
     object.each("points", true, [&](Object& point) { plane.points.push_back(point_of(point)); });
     return plane;
 }
@@ -203,15 +190,10 @@ NominalSeam seam_of(Object& object) {
     return seam;
 }
 
-// How the scan is searched.
-void read_search(Object& root, NominalSurfaceFile& surface) {
-    root.number("least_share", false, surface.least_share, 0, true, 1);
-    surface.scan_sensor_mm = root.vector_if_given("sensor_mm");
-}
-
 NominalSurfaceFile surface_of(Object& root, const std::filesystem::path& folder) {
     NominalSurfaceFile surface;
-    read_search(root, surface);
+    root.number("least_share", false, surface.least_share, 0, true, 1);
+    surface.scan_sensor_mm = root.vector_if_given("sensor_mm");
     surface.file = folder / root.text("surface", true);
     surface.unit = static_cast<Unit>(root.choice("surface_unit", false, kUnitNames, 0));
     surface.surface_sensor_mm = root.vector_if_given("surface_sensor_mm");
@@ -236,10 +218,6 @@ void read_method(Object& root, const std::filesystem::path& folder, NominalFixtu
             root.number("sigma_mm", false, n.sigma_mm, 0);
             root.each("planes", true, [&](Object& o) { n.planes.push_back(plane_of(o)); });
             break;
-        case FixtureMethod::scanned_planes:
-            read_search(root, n.surface);
-            root.each("planes", true, [&](Object& o) { n.faces.push_back(face_of(o)); });
-            break;
         case FixtureMethod::best_fit:
             n.surface = surface_of(root, folder);
             break;
@@ -249,9 +227,6 @@ void read_method(Object& root, const std::filesystem::path& folder, NominalFixtu
     }
     for (const NamedPoint& feature : n.features) {
         names.push_back(feature.name);
-    }
-    for (const PlaneFace& face : n.faces) {
-        names.push_back(face.name);
     }
     for (const NominalSeam& seam : n.seams) {
         names.push_back(seam.name);

@@ -13,9 +13,9 @@
 /// The files that a fixture calibration reads.
 namespace seampath {
 
-enum class FixtureMethod { balls, points, three_points, planes, scanned_planes, best_fit, seams };
-inline constexpr std::array<std::string_view, 7> kFixtureMethodNames{
-    "balls", "points", "three-points", "planes", "scan-planes", "best-fit", "seams"};
+enum class FixtureMethod { balls, points, three_points, planes, best_fit, seams };
+inline constexpr std::array<std::string_view, 6> kFixtureMethodNames{"balls",  "points",   "three-points",
+                                                                     "planes", "best-fit", "seams"};
 
 /// A datum plane and where it is to be touched.
 struct NominalPlane {
@@ -25,9 +25,9 @@ struct NominalPlane {
     std::vector<NamedPoint> points;
 };
 
-/// How a scan is searched, and the nominal surface of a best fit: a mesh, or a golden scan.
+/// The nominal surface of a best fit: a mesh, or a golden scan.
 struct NominalSurfaceFile {
-    std::filesystem::path file;  ///< empty for planes
+    std::filesystem::path file;
     Unit unit = Unit::automatic;
     double least_share = 0.15;
     std::optional<Eigen::Vector3d> scan_sensor_mm, surface_sensor_mm;
@@ -42,7 +42,6 @@ struct NominalFixture {
     double sigma_mm = 0;               ///< 1-sigma of a touched point that names none of its own
     std::vector<NamedPoint> features;  ///< balls or points
     std::vector<NominalPlane> planes;
-    std::vector<PlaneFace> faces;
     NominalSurfaceFile surface;
     std::vector<NominalSeam> seams;
     std::vector<WorkPoint> work_points;

@@ -33,6 +33,7 @@ constexpr std::size_t kSomePoints = 20000;   // that poses are compared on
 constexpr double kSideCosine = 0.5;          // of a normal to that of the surface
 constexpr double kSightCosine = 0.05;        // of the line of sight to it
 constexpr double kSharpFactor = 3;           // of the median roughness: more is an edge
+constexpr double kLeastOfGolden = 0.5;       // of a golden scan, that must be seen
 constexpr double kMuchMore = 1.2;            // that a pose shows than the best of those that are held
 constexpr std::size_t kFewestPoints = 1000;  // of either cloud
 
@@ -151,10 +152,12 @@ BestFit calibrate_surface(const Scan& scan, const Scan& nominal, const std::vect
     check_size(nominal);
     const Surfaces s = surfaces_of(scan, nominal, options);
     const std::size_t surfels = s.nominal.fine.surfels().size();
+    // A scan has borders of its own, and laid on another by half of it or less it may lie anywhere.
+    const double least_share =
+        nominal.normals.empty() ? std::max(kLeastOfGolden, options.least_share) : options.least_share;
     BestFit fit;
     fit.scan_noise_mm = s.scan.noise_mm;
-    FoundPose best =
-        choose(calibrating::search_poses(s.nominal, s.scan, kWeakShare), surfels, options.least_share, fit.frame);
+    FoundPose best = choose(calibrating::search_poses(s.nominal, s.scan, kWeakShare), surfels, least_share, fit.frame);
     if (best.seen == 0) {
         return fit;
     }

@@ -187,21 +187,6 @@ struct BestFit {
 BestFit calibrate_surface(const Scan& scan, const Scan& nominal, const std::vector<WorkPoint>& work_points,
                           const BestFitOptions& options);
 
-/// A nominal plane of the part, as far as it reaches.
-struct PlaneFace {
-    std::string name;
-    Eigen::Vector3d normal;                ///< unit, out of the material, part frame
-    double offset_mm = 0;                  ///< of the plane: normal . q = offset
-    std::vector<Eigen::Vector3d> corners;  ///< of a convex polygon on it, in order, at least 3
-};
-
-/// Datum planes in the order of their precedence (3-2-1) as a scan shows them among whatever lies around: found as
-/// calibrate_surface() finds a nominal surface, then each by the means of its points over some tens of fields. Throws
-/// InputError for other than three planes that stand across each other, corners off their plane, a plane that the scan
-/// does not show, and as calibrate_surface() does; the faults of the search are those of the result.
-FrameResult calibrate_scanned_planes(const Scan& scan, const std::vector<PlaneFace>& planes,
-                                     const std::vector<WorkPoint>& work_points, const BestFitOptions& options);
-
 /// A nominal seam as a polyline.
 struct NominalSeam {
     std::string name;

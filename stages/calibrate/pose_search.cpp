@@ -211,12 +211,12 @@ std::vector<FoundPose> search_poses(const NominalSurface& nominal, const Scanned
             fine.push_back(pose);
         }
     }
-    for (FoundPose& pose : fine) {
-        const Isometry3d start = pose.fit.base_from_part;
-        pose = {};
-        pose.fit = fit_to_surface(nominal.fine, scan.some, start, nominal.fine.spacing(), scan.noise_mm,
-                                  scan.least_cosine, weak_ratio);
-    }
+    parallel_for(fine.size(), 1, [&](std::size_t i) {
+        const Isometry3d start = fine[i].fit.base_from_part;
+        fine[i] = {};
+        fine[i].fit = fit_to_surface(nominal.fine, scan.some, start, nominal.fine.spacing(), scan.noise_mm,
+                                     scan.least_cosine, weak_ratio);
+    });
     const double gate = common_gate(fine);
     for (FoundPose& pose : fine) {
         weigh(nominal.fine, scan.points, gate, scan.least_cosine, weak_ratio, pose);

