@@ -96,6 +96,15 @@ std::string JsonObject::text(const char* key) const {
     return value.is_string() ? value.get<std::string>() : std::string();
 }
 
+std::size_t JsonObject::word(const char* key, std::span<const std::string_view> words) const {
+    const std::string given = text(key);
+    const auto found = std::find(words.begin(), words.end(), given);
+    if (found == words.end() && has(key)) {
+        complain(key, "\"" + given + "\" is unknown; there are " + join(words) + hint(given, words));
+    }
+    return found == words.end() ? 0 : static_cast<std::size_t>(found - words.begin());
+}
+
 void read_json_file(const std::filesystem::path& file, std::size_t max_bytes, const std::string& who,
                     const std::string& what,
                     const std::function<void(const JsonObject::Json&, std::vector<std::string>&)>& take) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +36,9 @@ public:
     /// A number above 0; `otherwise`, where there is no such key.
     double positive(const char* key, double otherwise) const;
     std::string text(const char* key) const;
+
+    /// Index of one of a few words; 0, which is complained of, for anything else.
+    std::size_t word(const char* key, std::span<const std::string_view> words) const;
 
     std::vector<std::string>& problems() const { return problems_; }
 

@@ -32,16 +32,6 @@ int whole_number(const JsonObject& object, const char* key, double least) {
     return static_cast<int>(v);
 }
 
-template <std::size_t N>
-int name_of(const JsonObject& object, const char* key, const std::array<std::string_view, N>& names) {
-    const std::string word = object.text(key);
-    const auto found = std::find(names.begin(), names.end(), word);
-    if (found == names.end() && object.has(key)) {
-        object.complain(key, "\"" + word + "\" is unknown; there are " + join(names) + hint(word, names));
-    }
-    return found == names.end() ? 0 : static_cast<int>(found - names.begin());
-}
-
 double needed(const JsonObject& object, const char* key) {
     object.member(key);
     return object.positive(key, 1);
@@ -115,9 +105,7 @@ LaserFile laser_file(const Json& json, std::vector<std::string>& problems) {
     file.limit_mm = root.positive("limit_mm", file.limit_mm);
     file.board = board_from(root.member("board"), "/board", problems);
     file.camera = root.member("camera");
-    if (!file.camera.is_string()) {
-        camera_from(file.camera, "/camera", problems);
-    }
+    check_camera(file.camera, problems);
     const Json& views = root.member("views");
     if (root.has("views") && !views.is_array()) {
         root.complain("views", "a list of views was needed");
@@ -157,14 +145,14 @@ Board board_from(const Json& value, const std::string& place, std::vector<std::s
     const JsonObject object(value, place, problems,
                             {"kind", "columns", "rows", "pitch_mm", "marker_mm", "diameter_mm", "dictionary"});
     Board board;
-    board.kind = static_cast<BoardKind>(name_of(object, "kind", kBoardKindNames));
+    board.kind = static_cast<BoardKind>(object.word("kind", kBoardKindNames));
     board.columns = whole_number(object, "columns", 2);
     board.rows = whole_number(object, "rows", 2);
     board.pitch_mm = needed(object, "pitch_mm");
     const bool markers = board.kind == BoardKind::charuco, round = board.kind == BoardKind::circles;
     if (markers) {
         board.size_mm = needed(object, "marker_mm");
-        board.dictionary = name_of(object, "dictionary", kMarkerDictionaryNames);
+        board.dictionary = static_cast<int>(object.word("dictionary", kMarkerDictionaryNames));
     } else if (round) {
         board.size_mm = needed(object, "diameter_mm");
     }
@@ -204,6 +192,29 @@ CameraRun calibrate_camera_file(const fs::path& path) {
     return run;
 }
 
+void check_camera(const Json& value, std::vector<std::string>& problems) {
+    if (!value.is_string()) {
+        camera_from(value, "/camera", problems);
+    }
+}
+
+CameraModel camera_or_result(const Json& value, const fs::path& folder) {
+    std::vector<std::string> none;
+    return value.is_string() ? read_camera_result(folder / value.get<std::string>()) : camera_from(value, "", none);
+}
+
+BoardPlace locate_in_picture(const fs::path& picture, const CameraModel& camera, const Board& board,
+                             std::vector<InputFile>& inputs) {
+    std::optional<std::pair<int, int>> size{{camera.width, camera.height}};
+    const BoardView view = view_of(picture_of(picture, size, inputs), board, picture.string());
+    if (view.points.empty()) {
+        throw InputError("board: " + picture.string() +
+                         ": the board is not seen; one that is whole in the picture, sharp and evenly lit was needed; "
+                         "check its kind and numbers");
+    }
+    return locate_board(camera, view, circle_radius(board));
+}
+
 LaserRun calibrate_laser_file(const fs::path& path) {
     LaserFile file;
     read_json_file(path, kMostOpticsBytes, "laser", "a file that names camera, board and views was needed",
@@ -211,20 +222,12 @@ LaserRun calibrate_laser_file(const fs::path& path) {
     LaserRun run;
     run.name = file.name;
     run.inputs.push_back({path.string(), sha256_of_file(path)});
-    std::vector<std::string> none;
-    run.camera = file.camera.is_string() ? read_camera_result(path.parent_path() / file.camera.get<std::string>())
-                                         : camera_from(file.camera, "", none);
+    run.camera = camera_or_result(file.camera, path.parent_path());
     std::optional<std::pair<int, int>> size{{run.camera.width, run.camera.height}};
     std::vector<LitView> views;
     for (const auto& [board_name, stripe_name] : file.views) {
         const fs::path board_path = path.parent_path() / board_name, stripe_path = path.parent_path() / stripe_name;
-        const BoardView board = view_of(picture_of(board_path, size, run.inputs), file.board, board_name);
-        if (board.points.empty()) {
-            throw InputError("laser: " + board_path.string() +
-                             ": the board is not seen; one that is whole in the picture, sharp and evenly lit was "
-                             "needed; check its kind and numbers");
-        }
-        LitView view{board_name, locate_board(run.camera, board, circle_radius(file.board)), {}};
+        LitView view{board_name, locate_in_picture(board_path, run.camera, file.board, run.inputs), {}};
         view.points =
             lit_points(picture_of(stripe_path, size, run.inputs), run.camera, view.board.camera_from_board, file.board);
         if (view.points.empty()) {

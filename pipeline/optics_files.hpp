@@ -28,6 +28,15 @@ namespace seampath {
 
 Board board_from(const JsonObject::Json& value, const std::string& place, std::vector<std::string>& problems);
 
+/// A camera in a user's file: as in a capture file, or the name of a result file beside it. The first complains of what
+/// is wrong; the second throws InputError for a result that can't be read or did not pass.
+void check_camera(const JsonObject::Json& value, std::vector<std::string>& problems);
+CameraModel camera_or_result(const JsonObject::Json& value, const std::filesystem::path& folder);
+
+/// The board in a picture, which is noted with its hash. Throws InputError where it is not seen.
+BoardPlace locate_in_picture(const std::filesystem::path& picture, const CameraModel& camera, const Board& board,
+                             std::vector<InputFile>& inputs);
+
 struct CameraRun {
     std::string name;
     Board board;

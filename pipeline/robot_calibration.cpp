@@ -30,6 +30,7 @@ RobotCalibration calibrate_robot(RobotMeasurement measured, const std::filesyste
                                                measured.options);
             break;
     }
+    c.inputs.insert(c.inputs.end(), measured.pictures.begin(), measured.pictures.end());
     c.measured = std::move(measured);
     return c;
 }

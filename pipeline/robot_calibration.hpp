@@ -19,6 +19,9 @@
 ///       "noise": { "robot_mm": 0.05, "robot_deg": 0.02, "sensor_mm": 0.05, "sensor_deg": 0.02 },         (optional)
 ///       "poses": [ { "name": "1", "base_from_flange": [...], "camera_from_board": [...] }, ... ] }        hand-eye
 ///
+///       or, in the place of camera_from_board, "image": "01.png" with "camera" and "board" as in
+///       pipeline/optics_files.hpp
+///
 ///     { "name": "cell 3", "sensor": "profiler", "mount": "on-arm", "ball_diameter_mm": 25.4,
 ///       "poses": [ { "name": "1", "base_from_flange": [...], "points_mm": [[x, z], ...] }, ... ] }        hand-eye
 namespace seampath {
@@ -35,6 +38,7 @@ struct RobotMeasurement {
     std::vector<FlangePose> tips;
     std::vector<BoardPose> boards;
     std::vector<BallProfile> profiles;
+    std::vector<InputFile> pictures;  ///< of boards
 };
 
 /// Throw one InputError with all problems, a line each.

@@ -2,6 +2,7 @@
 
 #include "pipeline/camera_json.hpp"
 #include "pipeline/json_text.hpp"
+#include "pipeline/optics_files.hpp"
 #include "pipeline/robot_calibration.hpp"
 #include "pipeline/text.hpp"
 #include "stages/angle.hpp"
@@ -15,17 +16,6 @@ using Json = JsonObject::Json;
 using Complaints = std::vector<std::string>;
 
 constexpr std::size_t kMostRobotBytes = std::size_t{64} << 20;
-
-/// One of a few words.
-template <std::size_t N>
-std::size_t word_of(const JsonObject& object, const char* key, const std::array<std::string_view, N>& words) {
-    const std::string word = object.text(key);
-    const auto found = std::find(words.begin(), words.end(), word);
-    if (found == words.end() && !word.empty()) {
-        object.complain(key, "\"" + word + "\" is unknown; there are " + join(words) + hint(word, words));
-    }
-    return found == words.end() ? 0 : static_cast<std::size_t>(found - words.begin());
-}
 
 void take_options(const JsonObject& root, RobotFrameOptions& options) {
     options.limit_mm = root.positive("limit_mm", options.limit_mm);
@@ -89,16 +79,38 @@ RobotMeasurement tcp_from(const Json& json, Complaints& problems) {
     return m;
 }
 
-RobotMeasurement hand_eye_from(const Json& json, Complaints& problems) {
+/// Pictures in the place of the board's poses.
+struct BoardPictures {
+    Json camera;
+    Board board;
+    std::vector<std::string> names;
+};
+
+BoardPictures pictures_from(const JsonObject& root, RobotMeasurement& m) {
+    BoardPictures pictures{root.member("camera"), board_from(root.member("board"), "/board", root.problems()), {}};
+    check_camera(pictures.camera, root.problems());
+    for_poses(root, {"name", "base_from_flange", "image"}, [&](const JsonObject& object, const FlangePose& flange) {
+        m.boards.push_back({flange, {}});
+        pictures.names.push_back(object.text("image"));
+    });
+    return pictures;
+}
+
+RobotMeasurement hand_eye_from(const Json& json, BoardPictures& pictures, Complaints& problems) {
     constexpr std::array<std::string_view, 2> kSensors{"camera", "profiler"};
     constexpr std::array<std::string_view, 2> kMounts{"on-arm", "beside-arm"};
-    const JsonObject root(json, "", problems,
-                          {"name", "sensor", "mount", "limit_mm", "noise", "ball_diameter_mm", "poses"});
+    const JsonObject root(
+        json, "", problems,
+        {"name", "sensor", "mount", "limit_mm", "noise", "ball_diameter_mm", "camera", "board", "poses"});
     RobotMeasurement m;
     m.name = root.text("name");
-    m.method = word_of(root, "sensor", kSensors) == 0 ? RobotMethod::camera : RobotMethod::profiler;
-    m.mount = static_cast<SensorMount>(word_of(root, "mount", kMounts));
+    m.method = root.word("sensor", kSensors) == 0 ? RobotMethod::camera : RobotMethod::profiler;
+    m.mount = static_cast<SensorMount>(root.word("mount", kMounts));
     take_options(root, m.options);
+    if (m.method == RobotMethod::camera && (root.has("board") || root.has("camera"))) {
+        pictures = pictures_from(root, m);
+        return m;
+    }
     if (m.method == RobotMethod::camera) {
         for_poses(root, {"name", "base_from_flange", "camera_from_board"},
                   [&](const JsonObject& object, const FlangePose& flange) {
@@ -125,8 +137,17 @@ RobotMeasurement read_tcp_poses(const fs::path& file) {
 
 RobotMeasurement read_hand_eye(const fs::path& file) {
     RobotMeasurement m;
+    BoardPictures pictures;
     read_json_file(file, kMostRobotBytes, "hand-eye", "a file with poses and what was seen in them was needed",
-                   [&](const Json& root, Complaints& problems) { m = hand_eye_from(root, problems); });
+                   [&](const Json& root, Complaints& problems) { m = hand_eye_from(root, pictures, problems); });
+    if (!pictures.names.empty()) {
+        const CameraModel camera = camera_or_result(pictures.camera, file.parent_path());
+        for (std::size_t i = 0; i < m.boards.size(); ++i) {
+            const fs::path picture = file.parent_path() / pictures.names[i];
+            m.boards[i].camera_from_board =
+                locate_in_picture(picture, camera, pictures.board, m.pictures).camera_from_board;
+        }
+    }
     return m;
 }
 

@@ -22,7 +22,7 @@ Plane laser_truth() {
 }
 
 /// Boards at working depths, and the line on each; errors of both from the seed.
-std::vector<LitView> lines(int count, double sigma_px, std::uint64_t seed) {
+std::vector<LitView> lines(int count, double sigma_px, std::uint64_t seed, double board_sigma_px) {
     const CameraModel camera = test::wide_camera();
     std::vector<LitView> views;
     Draws draws(seed, 4712);
@@ -32,7 +32,7 @@ std::vector<LitView> lines(int count, double sigma_px, std::uint64_t seed) {
                              .toRotationMatrix();
         place.translation() = Vector3d(-75, -52, 290 + 80.0 * i / std::max(1, count - 1));
         LitView view{"view " + std::to_string(i + 1), {}, {}};
-        view.board = locate_board(camera, test::seen(test::corners(), camera, place, sigma_px, seed * 50 + i), 0);
+        view.board = locate_board(camera, test::seen(test::corners(), camera, place, board_sigma_px, seed * 50 + i), 0);
         const auto line = line_on_board(test::corners(), camera, place, laser_truth());
         for (std::size_t k = 0; k + 20 < line.size(); k += 20) {
             const Vector2d along = (line[k + 1] - line[k]).normalized(), normal(-along.y(), along.x());
@@ -41,6 +41,19 @@ std::vector<LitView> lines(int count, double sigma_px, std::uint64_t seed) {
         views.push_back(view);
     }
     return views;
+}
+
+std::vector<LitView> lines(int count, double sigma_px, std::uint64_t seed) {
+    return lines(count, sigma_px, seed, sigma_px);
+}
+
+/// Chi-squared of the plane's error, over its three numbers.
+double chi_squared(const LaserCalibration& r) {
+    const Plane truth = laser_truth();
+    const double sign = r.plane.normal.dot(truth.normal) > 0 ? 1 : -1;
+    const Vector3d turn = r.plane.normal.cross(sign * truth.normal);
+    const Vector3d e(turn.dot(r.u), turn.dot(r.v), -signed_distance(truth, r.plane.point) * sign);
+    return e.dot(r.covariance.ldlt().solve(e)) / 3;
 }
 
 /// Largest distance of the two planes over the working depth, where the laser is seen.
@@ -74,18 +87,24 @@ TEST(CalibrateLaser, NoiseOfAFifthOfAPixelLeavesTwoHundredths) {
         squares += error * error;
         worst = std::max(worst, error);
         inside += error <= r.expanded_mm;
-        const Plane truth = laser_truth();
-        const double sign = r.plane.normal.dot(truth.normal) > 0 ? 1 : -1;
-        const Vector3d turn = r.plane.normal.cross(sign * truth.normal);
-        const Vector3d e(turn.dot(r.u), turn.dot(r.v), -signed_distance(truth, r.plane.point) * sign);
-        chi2 += e.dot(r.covariance.ldlt().solve(e)) / (3 * kSets);
+        chi2 += chi_squared(r) / kSets;
     }
     std::cout << "plane over the working depth: rms of the largest error " << std::sqrt(squares / kSets)
               << " mm, worst " << worst << " mm; chi-squared " << chi2 << "; within what was stated: " << inside
               << " of " << kSets << "\n";
     EXPECT_LE(std::sqrt(squares / kSets), 0.02);
     EXPECT_GE(inside, 34);
-    EXPECT_NEAR(chi2, 1, 0.35);
+    EXPECT_NEAR(chi2, 1, 3 * std::sqrt(2.0 / (3 * kSets)));
+}
+
+// With boards as good as known, what is left is the lines' own noise.
+TEST(CalibrateLaser, SigmaOfTheLinesIsTrue) {
+    constexpr int kSets = 30;
+    double chi2 = 0;
+    for (std::uint64_t seed = 1; seed <= kSets; ++seed) {
+        chi2 += chi_squared(calibrate_laser(test::wide_camera(), lines(6, 0.2, seed, 1e-3), 0.05)) / kSets;
+    }
+    EXPECT_NEAR(chi2, 1, 3 * std::sqrt(2.0 / (3 * kSets)));
 }
 
 TEST(CalibrateLaser, PoorSetsSayWhatIsMissing) {

@@ -103,6 +103,30 @@ TEST_F(OpticsCli, LinesOnBoardsGiveThePlaneOfACaptureFile) {
                 HasSubstr("is no result of a camera's calibration"));
 }
 
+TEST_F(OpticsCli, HandEyeTakesPicturesOfTheBoard) {
+    Eigen::Isometry3d flange_from_camera = Eigen::Isometry3d::Identity(), base_from_board = flange_from_camera;
+    flange_from_camera.linear() = turn_by(Vector3d(0.1, -0.2, 1.5)).toRotationMatrix();
+    flange_from_camera.translation() = Vector3d(40, -25, 90);
+    base_from_board.translation() = Vector3d(800, 100, 50);
+    Json poses = Json::array();
+    for (const auto& place : board_places(test::corners(), camera, 5, 40, 3)) {
+        const std::string image = "h" + std::to_string(poses.size()) + ".png";
+        write(image, png_bytes(draw_board(test::corners(), camera, place, {}, 1)));
+        poses.push_back({{"image", image},
+                         {"base_from_flange", pose_numbers(base_from_board * (flange_from_camera * place).inverse())}});
+    }
+    const Json file{
+        {"name", "eye"},  {"sensor", "camera"}, {"mount", "on-arm"}, {"limit_mm", 1}, {"camera", camera_json(camera)},
+        {"board", board}, {"poses", poses}};
+    write("eye.json", file.dump());
+    const Outcome run = calibrate("hand-eye", "eye.json");
+    EXPECT_EQ(run.status, 0) << run.err << run.out;
+    const Json json = result("hand-eye");
+    const auto p = json.at("flange_from_camera").at("position_mm").get<std::vector<double>>();
+    EXPECT_LT((Vector3d(p[0], p[1], p[2]) - flange_from_camera.translation()).norm(), 0.5);
+    EXPECT_EQ(json.at("inputs").size(), 6u);
+}
+
 TEST_F(OpticsCli, BadInputIsOneClearLineEach) {
     const auto views = [&](Json changed, Json images = Json::array({"a.png"})) {
         return Json{{"name", "top"}, {"board", std::move(changed)}, {"images", std::move(images)}};
