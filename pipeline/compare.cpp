@@ -143,7 +143,7 @@ std::string seam_label(std::size_t a, std::size_t b) {
 }
 
 /// Seams that only one of the runs has.
-void add_unpaired(Comparison& c) {
+void add_unpaired(RunComparison& c) {
     for (const bool first : {true, false}) {
         const std::size_t count = (first ? c.a : c.b).models.size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -163,7 +163,7 @@ void add_unpaired(Comparison& c) {
     }
 }
 
-void add_settings(Comparison& c, const fs::path& a, const fs::path& b) {
+void add_settings(RunComparison& c, const fs::path& a, const fs::path& b) {
     const auto flat = [](const fs::path& folder) {
         return parse_json(read_file(folder / "config.resolved.json", kMostComparedBytes, "compare")).flatten();
     };
@@ -193,7 +193,7 @@ bool is_worse_difference(const Difference& x, const Difference& y) {
     return key(x) < key(y);
 }
 
-std::string comparison_sentence(const Comparison& c) {
+std::string comparison_sentence(const RunComparison& c) {
     const auto differ = std::count_if(c.differences.begin(), c.differences.end(),
                                       [](const auto& d) { return d.verdict == DifferenceVerdict::differs; });
     std::string text = std::to_string(c.pairs.size()) + (c.pairs.size() == 1 ? " seam" : " seams") + " compared: ";
@@ -214,8 +214,8 @@ double Difference::share() const {
     return allowed && difference && *allowed > 0 ? std::abs(*difference) / *allowed : 0;
 }
 
-Comparison compare_runs(const fs::path& a, const fs::path& b) {
-    Comparison c;
+RunComparison compare_runs(const fs::path& a, const fs::path& b) {
+    RunComparison c;
     c.a = load_compared(a);
     c.b = load_compared(b);
     c.pairs = pair_seams(c.a, c.b);

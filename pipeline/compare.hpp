@@ -59,7 +59,7 @@ struct ComparedRun {
     std::vector<Deviation> deviations;
 };
 
-struct Comparison {
+struct RunComparison {
     ComparedRun a, b;
     std::vector<SeamPair> pairs;
     std::vector<Difference> differences;  ///< worst first
@@ -74,12 +74,12 @@ struct Comparison {
 /// plane) and against the smaller tolerance; dimensions with a sigma against 3 sigmas; kinds, closedness and verdicts
 /// against being equal. A seam without a partner differs. Everything else in report.json is told. Throws InputError for
 /// folders without a whole run over a scan.
-Comparison compare_runs(const std::filesystem::path& a, const std::filesystem::path& b);
+RunComparison compare_runs(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// For machines.
-std::string comparison_json(const Comparison& comparison);
+std::string run_comparison_json(const RunComparison& comparison);
 
 /// One file that needs no network: both runs overlaid, and the differences, worst first.
-std::string comparison_page(const Comparison& comparison);
+std::string run_comparison_page(const RunComparison& comparison);
 
 }  // namespace seampath

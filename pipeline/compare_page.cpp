@@ -19,7 +19,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr double kOverlayWidth = 1180, kOverlayHeight = 420, kPairWidth = 1180, kPairHeight = 220;
+constexpr double kOverlayWidth = 1180, kOverlayHeight = 300, kPairWidth = 1180, kPairHeight = 220;
 constexpr double kWhisker = 0.08;  // of the picture's extent: the largest difference as it is drawn
 constexpr int kOverlayPoints = 200;
 constexpr std::size_t kWhiskerEvery = 5;  // places of a pair
@@ -57,12 +57,12 @@ std::vector<Eigen::Vector3d> curve_points(const SeamModel& model) {
 
 /// Largest of 1, 2 or 5 times a power of ten by which the largest difference stays a whisker.
 double exaggeration(double extent, double most) {
-    const double wanted = kWhisker * extent / std::max(most, 1e-9);
+    const double wanted = kWhisker * extent / most;
     const double power = std::pow(10, std::floor(std::log10(wanted)));
     return power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
 }
 
-std::string overlay(const Comparison& c) {
+std::string overlay(const RunComparison& c) {
     std::vector<PictureLine> lines;
     Eigen::AlignedBox3d box;
     for (const auto& [run, style] : {std::pair(&c.a, "first"), std::pair(&c.b, "second")}) {
@@ -79,7 +79,8 @@ std::string overlay(const Comparison& c) {
             most = std::max(most, place.off.norm());
         }
     }
-    const double times = box.isEmpty() ? 1 : exaggeration(box.diagonal().norm(), most);
+    const double extent = box.isEmpty() ? 0 : box.diagonal().norm();
+    const double times = most <= 1e-9 * extent ? 1 : exaggeration(extent, most);
     for (const SeamPair& pair : c.pairs) {
         for (std::size_t k = 0; k < pair.places.size(); k += kWhiskerEvery) {
             lines.push_back({{pair.places[k].p, pair.places[k].p + times * pair.places[k].off}, "apart"});
@@ -139,7 +140,7 @@ std::vector<PlotPoint> moved_to_a(const SeamPair& pair, const Deviation& b) {
     return line;
 }
 
-std::string deviation_overlay(const Comparison& c, const SeamPair& pair) {
+std::string deviation_overlay(const RunComparison& c, const SeamPair& pair) {
     const std::vector<PlotPoint> a = deviations_of(c.a.deviations[pair.a]),
                                  b = moved_to_a(pair, c.b.deviations[pair.b]);
     double most = 1e-4;
@@ -195,7 +196,7 @@ std::string difference_table(const std::vector<Difference>& differences) {
     return html + "</tbody></table></div>\n";
 }
 
-std::string settings_difference(const Comparison& c) {
+std::string settings_difference(const RunComparison& c) {
     if (c.settings.empty()) {
         return "<h2>Settings</h2><p class=\"soft\">Both runs have the same.</p>\n";
     }
@@ -209,8 +210,10 @@ std::string settings_difference(const Comparison& c) {
 }
 
 /// Both runs' own identities, side by side.
-std::string runs_table(const Comparison& c) {
-    const OrderedJson a = parse_json(c.a.report).at("identity"), b = parse_json(c.b.report).at("identity");
+std::string runs_table(const RunComparison& c) {
+    // Runs of builds that named none are compared as well.
+    const OrderedJson none = OrderedJson::array(), a = parse_json(c.a.report).value("identity", none),
+                      b = parse_json(c.b.report).value("identity", none);
     const auto value = [](const OrderedJson& rows, const std::string& name) {
         for (const OrderedJson& row : rows) {
             if (row.at("name") == name) {
@@ -233,7 +236,7 @@ std::string runs_table(const Comparison& c) {
 
 }  // namespace
 
-std::string comparison_json(const Comparison& c) {
+std::string run_comparison_json(const RunComparison& c) {
     OrderedJson pairs = OrderedJson::array();
     for (const SeamPair& pair : c.pairs) {
         pairs.push_back({{"a", pair.a}, {"b", pair.b}});
@@ -249,7 +252,7 @@ std::string comparison_json(const Comparison& c) {
            "\n";
 }
 
-std::string comparison_page(const Comparison& c) {
+std::string run_comparison_page(const RunComparison& c) {
     const std::string parts = c.a.part == c.b.part ? c.a.part : c.a.part + " and " + c.b.part;
     std::string html = page_head("Comparison of " + parts + " – Seampath") +
                        "<header><div><div class=\"brand\">SEAMPATH " SEAMPATH_VERSION
@@ -257,18 +260,19 @@ std::string comparison_page(const Comparison& c) {
                        escape_html(parts) + "</h1><div class=\"verdict " + (c.pass ? "pass" : "fail") +
                        "\" id=\"verdict\"><b>" + (c.pass ? "SAME" : "DIFFERENT") + "</b><span>" +
                        escape_html(c.sentence) + "</span></div></div></header>\n<main>\n" + runs_table(c) + overlay(c);
+    html +=
+        "<h2>Differences, worst first</h2><p class=\"soft\">Positions are compared in the frames of the scans. A "
+        "distance is judged by 3.41 σ of both curves together and by the smaller tolerance, a dimension by 3 σ, a fact "
+        "by being equal. What has no σ is told, not judged.</p>" +
+        difference_table(c.differences);
     for (const SeamPair& pair : c.pairs) {
         html += "<h2>Seam " + std::to_string(pair.a) +
                 (pair.a == pair.b ? "" : " of A, " + std::to_string(pair.b) + " of B") + "</h2><div class=\"plots\">" +
                 distance_plot(pair, c.a.models[pair.a].length_mm) + deviation_overlay(c, pair) + "</div>\n";
     }
-    html +=
-        "<h2>Differences, worst first</h2><p class=\"soft\">Positions are compared in the frames of the scans. A "
-        "distance is judged by 3.41 σ of both curves together and by the smaller tolerance, a dimension by 3 σ, a fact "
-        "by being equal. What has no σ is told, not judged.</p>" +
-        difference_table(c.differences) + settings_difference(c) +
-        "<footer>Lengths in mm; across is to the right of travel, up is into the air.</footer></main>\n<script>" +
-        std::string(sort_script()) + "</script>\n</body></html>\n";
+    html += settings_difference(c) +
+            "<footer>Lengths in mm; across is to the right of travel, up is into the air.</footer></main>\n<script>" +
+            std::string(sort_script()) + "</script>\n</body></html>\n";
     return html;
 }
 

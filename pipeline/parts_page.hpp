@@ -12,7 +12,6 @@ namespace seampath {
 struct PartRow {
     std::string name;
     std::string folder;  ///< of the part, from that of the page
-    std::string result;  ///< "pass", "out of tolerance", ...
     bool pass = false;
     bool has_report = false;  ///< a part that failed to run has none, and no numbers
     std::string sentence;     ///< the report's verdict, or why there is none
@@ -25,7 +24,7 @@ struct PartRow {
     std::string picture;        ///< SVG of its seams
 };
 
-/// What a run found, but for name, folder and result.
+/// What a run found, but for name and folder.
 PartRow part_row(const PartResult& part);
 
 /// One file that needs no network: a row a part, worst first, which a click on a heading sorts otherwise; each with a

@@ -19,7 +19,10 @@
     for (let i = 0; i < steps.length; i += 2) points.push([steps[i] * reach / 32767, steps[i + 1] * reach / 32767]);
     return points;
   };
-  const signed = (value) => (value < 0 ? '−' : '+') + Math.abs(value).toFixed(3);
+  const signed = (value) => {
+    const size = Math.abs(value).toFixed(3);
+    return (Number(size) === 0 ? '' : value < 0 ? '−' : '+') + size;
+  };
 
   // ---------------------------------------------------------------------------------------------------- the section
   // Both axes at one scale, so that angles are true; as near as the points allow.

@@ -24,8 +24,9 @@ constexpr int kBins = 40;
 /// Bends wider than 1 m look straight.
 constexpr double kLeastCurvature = 1e-3;
 
-/// A tolerance so many times larger than all that was measured would flatten the plot; it is then only named.
-constexpr double kToleranceInSight = 6;
+/// A tolerance so many times larger than all that was measured would flatten the histogram, or the deviation along the
+/// seam; it is then only named.
+constexpr double kToleranceInSight = 6, kBandInSight = 12;
 
 std::string figure(const std::string& style, const std::string& caption, const std::string& svg) {
     return "<figure class=\"" + style + "\"><figcaption>" + caption + "</figcaption>" + svg + "</figure>\n";
@@ -58,7 +59,7 @@ DeviationLines deviation_lines(const Deviation& deviation) {
     return lines;
 }
 
-/// Grey boxes over the runs of samples that were not checked against the scan.
+/// Grey boxes over the runs of samples that were not checked against the scan, from one checked sample to the next.
 std::string unchecked_boxes(const PlotAxes& axes, const Deviation& deviation) {
     const auto& samples = deviation.samples;
     std::string svg;
@@ -68,8 +69,9 @@ std::string unchecked_boxes(const PlotAxes& axes, const Deviation& deviation) {
             ++i;
         }
         if (i > first) {
-            svg += svg_box(axes, {samples[first].station_mm, axes.y_low}, {samples[i - 1].station_mm, axes.y_high},
-                           "unchecked");
+            const double from = first > 0 ? samples[first - 1].station_mm : axes.x_low;
+            const double to = i < samples.size() ? samples[i].station_mm : axes.x_high;
+            svg += svg_box(axes, {from, axes.y_low}, {to, axes.y_high}, "unchecked");
         }
     }
     return svg;
@@ -88,7 +90,7 @@ std::string deviation_plot(const Deviation& deviation, const SeamModel& model) {
     const double length_mm = std::max(model.length_mm, 1e-3);
     const DeviationLines lines = deviation_lines(deviation);
     const double tolerance = deviation.tolerance_mm;
-    const bool in_sight = tolerance > 0 && tolerance < kToleranceInSight * lines.most;
+    const bool in_sight = tolerance > 0 && tolerance < kBandInSight * lines.most;
     const double reach = padded(in_sight ? std::max(tolerance, lines.most) : lines.most, 1e-4);
     const PlotAxes axes{kWide, kWideHeight, 0, length_mm, -reach, reach, "station along the seam, mm", "deviation, mm"};
     std::string svg = svg_axes(axes, "Deviation of the seam from the scan, along the seam");
@@ -103,7 +105,7 @@ std::string deviation_plot(const Deviation& deviation, const SeamModel& model) {
                svg_level(axes, -tolerance, "", "limit");
     }
     const std::string beyond =
-        in_sight ? "" : " The tolerance, " + decimal(tolerance, 3) + " mm, lies outside the plot.";
+        in_sight ? "" : ". The tolerance, " + decimal(tolerance, 3) + " mm, lies outside the plot.";
     return figure("wide by-station",
                   "<b>Deviation from the scan</b> <i class=\"value\"></i>distance to the line in which the scanned "
                   "flanks meet, with "

@@ -27,9 +27,9 @@ struct Resume {
 /// One part on its way through the program: scan file in, run folder with seams, programs and report out.
 /// The folder's files are those of README, "Files in a run folder"; each appears whole or not at all, and all of them
 /// depend on scan, config and build alone (times go to `progress` and are in no file; 1-scan.json says where the scan
-/// lies from the folder). A run that was killed goes on from its last good artefact. No programs are written for seams
-/// out of tolerance unless export.even_if_out_of_tolerance. Throws InputError (scan, config, folder), Interrupted,
-/// InternalError. No seam found is a result, not an error.
+/// lies from the folder, report.html when the scan's file was last written). A run that was killed goes on from its
+/// last good artefact. No programs are written for seams out of tolerance unless export.even_if_out_of_tolerance.
+/// Throws InputError (scan, config, folder), Interrupted, InternalError. No seam found is a result, not an error.
 PartResult run_part(const std::filesystem::path& scan_file, const std::filesystem::path& out, const Config& config,
                     const Resume& resume = {}, const Progress& progress = {});
 

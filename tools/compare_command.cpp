@@ -18,7 +18,7 @@ std::string digits(const std::optional<double>& value) {
     return value ? fixed(*value, 4) : "-";
 }
 
-void print_comparison(const Comparison& comparison) {
+void print_comparison(const RunComparison& comparison) {
     std::vector<std::vector<std::string>> rows{{"of", "what", "difference", "sigma", "allowed", "share", "verdict"}};
     std::size_t told = 0, left_out = 0;
     for (const Difference& d : comparison.differences) {
@@ -64,12 +64,12 @@ Command compare_command(CLI::App& program) {
         "  seampath compare before after --json\n"
         "Exit status: 0 nothing differs, 1 something does, 2 bad input\n");
     return {app, [given] {
-                const Comparison comparison = compare_runs(given->a, given->b);
+                const RunComparison comparison = compare_runs(given->a, given->b);
                 if (!given->out.empty()) {
-                    write_output(given->out, comparison_page(comparison));
+                    write_output(given->out, run_comparison_page(comparison));
                 }
                 if (given->json) {
-                    std::cout << comparison_json(comparison);
+                    std::cout << run_comparison_json(comparison);
                 } else {
                     print_comparison(comparison);
                 }

@@ -149,7 +149,6 @@ std::string summary_page(const std::vector<Part>& all) {
     for (const auto& part : all) {
         rows.push_back(part.row);
         rows.back().name = rows.back().folder = part.name;
-        rows.back().result = word(part.status);
         if (!part.row.has_report) {
             rows.back().sentence =
                 "no report: the run ended with exit status " + std::to_string(part.status) + " and a message on stderr";

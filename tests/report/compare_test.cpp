@@ -6,6 +6,8 @@
 
 #include "pipeline/artefact.hpp"
 #include "pipeline/codec.hpp"
+#include "pipeline/config.hpp"
+#include "pipeline/digest.hpp"
 #include "pipeline/files.hpp"
 #include "pipeline/report.hpp"
 #include "tests/cli/spawn.hpp"
@@ -22,8 +24,8 @@ using testing::HasSubstr;
 void write_run(const std::filesystem::path& folder, const PartResult& part) {
     const RunFolder run(folder);
     run.write("config.resolved.json", config_json(part.config));
-    run.write("4-models.json", artefact_text("fit", "key", encode(part.models)));
-    run.write("5-deviation.json", artefact_text("validate", "key", encode(part.deviations)));
+    run.write("4-models.json", artefact_text("fit", sha256("key"), encode(part.models)));
+    run.write("5-deviation.json", artefact_text("validate", sha256("key"), encode(part.deviations)));
     run.write("report.json", report_json(part));
 }
 
@@ -35,7 +37,7 @@ void move_seam(PartResult& part, std::size_t seam, const Vector3d& by) {
 
 class Compare : public testing::Test {
 protected:
-    Comparison against(const PartResult& b) {
+    RunComparison against(const PartResult& b) {
         write_run(folder_.path() / "a", example_part());
         write_run(folder_.path() / "b", b);
         return compare_runs(folder_.path() / "a", folder_.path() / "b");
@@ -44,7 +46,7 @@ protected:
     const TestFolder folder_;
 };
 
-Difference find(const Comparison& comparison, const std::string& of, const std::string& name) {
+Difference find(const RunComparison& comparison, const std::string& of, const std::string& name) {
     for (const Difference& d : comparison.differences) {
         if (d.of == of && d.name == name) {
             return d;
@@ -55,7 +57,7 @@ Difference find(const Comparison& comparison, const std::string& of, const std::
 }
 
 TEST_F(Compare, ARunDoesNotDifferFromItself) {
-    const Comparison c = against(example_part());
+    const RunComparison c = against(example_part());
     EXPECT_TRUE(c.pass);
     EXPECT_EQ(c.pairs.size(), 2U);
     EXPECT_TRUE(c.settings.empty());
@@ -71,7 +73,7 @@ TEST_F(Compare, ADistanceIsJudgedBySigmasAndTolerance) {
           std::pair(0.12, DifferenceVerdict::differs)}) {
         PartResult part = example_part();
         move_seam(part, 1, {0, 0, moved_mm});  // the rib lies along x
-        const Comparison c = against(part);
+        const RunComparison c = against(part);
         const Difference d = find(c, "seam 1", "distance_p997_mm");
         EXPECT_NEAR(*d.difference, moved_mm, 1e-9);
         EXPECT_NEAR(*d.sigma, std::hypot(0.012, 0.012), 1e-12);
@@ -88,7 +90,7 @@ TEST_F(Compare, TheWorstComesFirst) {
     PartResult part = example_part();
     move_seam(part, 0, {0, 0, 0.5});
     move_seam(part, 1, {0, 0, 0.3});
-    const Comparison c = against(part);
+    const RunComparison c = against(part);
     EXPECT_EQ(c.differences[0].of, "seam 0");
     EXPECT_EQ(c.differences[0].name, "distance_p997_mm");
     EXPECT_NEAR(c.differences[0].share(), 5, 1e-6);
@@ -102,7 +104,7 @@ TEST_F(Compare, SeamsArePairedByWhereTheyLie) {
     std::swap(part.deviations[0], part.deviations[1]);
     std::swap(part.extraction.seams[0], part.extraction.seams[1]);
     std::swap(part.nodes[0], part.nodes[1]);
-    const Comparison c = against(part);
+    const RunComparison c = against(part);
     ASSERT_EQ(c.pairs.size(), 2U);
     EXPECT_EQ(c.pairs[0].b, 1U);
     EXPECT_EQ(c.pairs[1].b, 0U);
@@ -112,7 +114,7 @@ TEST_F(Compare, SeamsArePairedByWhereTheyLie) {
 TEST_F(Compare, ASeamWithoutAPartnerDiffers) {
     PartResult part = example_part();
     move_seam(part, 1, {0, 0, 40});
-    const Comparison c = against(part);
+    const RunComparison c = against(part);
     EXPECT_FALSE(c.pass);
     EXPECT_EQ(c.pairs.size(), 1U);
     EXPECT_EQ(find(c, "seam 1", "found").verdict, DifferenceVerdict::differs);
@@ -133,7 +135,7 @@ TEST_F(Compare, ADimensionIsJudgedByItsSigma) {
 TEST_F(Compare, OtherVerdictsAndSettingsShow) {
     PartResult part = example_part(false);
     part.config.plan.speed_mm_s = 6;
-    const Comparison c = against(part);
+    const RunComparison c = against(part);
     EXPECT_EQ(find(c, "seam 1", "in_tolerance").verdict, DifferenceVerdict::differs);
     ASSERT_EQ(c.settings.size(), 1U);
     EXPECT_EQ(c.settings[0].name, "plan/speed_mm_s");

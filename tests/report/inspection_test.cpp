@@ -98,7 +98,7 @@ TEST(Inspection, SectionsHoldTheScanAndEndTheTracesOnTheFlanks) {
     EXPECT_LT(rib.sections.front().sample.station_mm, 1);
     EXPECT_GT(rib.sections.back().sample.station_mm, 115);
     const float half = std::sqrt(0.5F);
-    const Eigen::Vector2f wall(half, half), plate(-half, half);  // normals: y and z, of travel n1 x n2 = x
+    const Eigen::Vector2f wall(-half, half), plate(half, half);  // normals: y and z; travel is x
     for (const SeamSection& section : rib.sections) {
         ASSERT_GT(section.points.size(), 100U);
         for (const Eigen::Vector2f& p : section.points) {

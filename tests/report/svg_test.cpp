@@ -55,12 +55,12 @@ TEST(Svg, AxesCarryLabelsAndEscapedTitle) {
 
 TEST(Svg, PutsPointsWhereTheAxesSay) {
     const std::vector<PlotPoint> points{{0, -1}, {5, 0}, {10, 1}};
-    EXPECT_THAT(svg_line(kAxes, points, "value"), HasSubstr("d=\"M58.0 210.0L272.0 110.0L486.0 10.0\""));
+    EXPECT_THAT(svg_line(kAxes, points, "value"), HasSubstr("d=\"M66.0 210.0L276.0 110.0L486.0 10.0\""));
 }
 
 TEST(Svg, KeepsWhatLiesOutsideAtTheEdge) {
     const std::vector<PlotPoint> points{{0, -7}, {10, 7}};
-    EXPECT_THAT(svg_line(kAxes, points, "value"), HasSubstr("d=\"M58.0 210.0L486.0 10.0\""));
+    EXPECT_THAT(svg_line(kAxes, points, "value"), HasSubstr("d=\"M66.0 210.0L486.0 10.0\""));
 }
 
 TEST(Svg, BreaksLinesAndBandsWhereNothingIsKnown) {
