@@ -15,9 +15,9 @@ using Eigen::Vector3d;
 using Names = std::vector<std::string>;
 
 /// Columns of the header by name.
-class Header {
+class PoseColumns {
 public:
-    Header(const Table& table, std::string file) : header_(table.header), file_(std::move(file)) {}
+    PoseColumns(const Table& table, std::string file) : header_(table.header), file_(std::move(file)) {}
 
     bool has(const Names& names) const {
         return std::all_of(names.begin(), names.end(), [&](const auto& name) { return find(name) < header_.size(); });
@@ -44,7 +44,7 @@ const Names kMillimetres{"x_mm", "y_mm", "z_mm"}, kMetres{"x_m", "y_m", "z_m"};
 const Names kQuaternion{"qw", "qx", "qy", "qz"}, kVector{"rx_rad", "ry_rad", "rz_rad"};
 const Names kKuka{"a_deg", "b_deg", "c_deg"}, kFanuc{"w_deg", "p_deg", "r_deg"};
 
-Quaterniond rotation_of(const Header& header, const std::vector<double>& row, std::size_t line) {
+Quaterniond rotation_of(const PoseColumns& header, const std::vector<double>& row, std::size_t line) {
     constexpr double kUnitTolerance = 1e-3;
     if (header.has(kQuaternion)) {
         const auto v = header.of(row, kQuaternion);
@@ -68,7 +68,7 @@ Quaterniond rotation_of(const Header& header, const std::vector<double>& row, st
 
 RobotMeasurement read_pose_table(const std::filesystem::path& file) {
     const Table table = read_table(file);
-    const Header header(table, file.string());
+    const PoseColumns header(table, file.string());
     const int rotations = header.has(kQuaternion) + header.has(kVector) + header.has(kKuka) + header.has(kFanuc);
     if (header.has(kMillimetres) == header.has(kMetres) || rotations != 1) {
         header.refuse(
