@@ -54,6 +54,7 @@ TEST(Inspection, WorstPlacesAreCheckedOnesATenthOfTheSeamApart) {
     Deviation deviation;
     for (int i = 0; i < 100; ++i) {
         DeviationSample s;
+        s.p = {static_cast<double>(i), 0, 0};
         s.station_mm = i + 0.5;
         s.distance_mm = 0.001 * i;
         s.covered = i != 99;
