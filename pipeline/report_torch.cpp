@@ -82,14 +82,13 @@ constexpr Pair kAccelerations{"Acceleration along the seam",
                               "<b>Acceleration</b> <i class=\"value\"></i>along the seam "
                               "<i class=\"flank1\"></i>across it, speed² · curvature",
                               1};
-constexpr Pair kAngles{
-    "Torch angles along the seam",
-    "angle, °",
-    work,
-    push,
-    "<b>Torch angles</b> from the bisector <i class=\"value\"></i>work, towards flank 1 "
-    "<i class=\"flank1\"></i>travel, pointing ahead",
-    1};
+constexpr Pair kAngles{"Torch angles along the seam",
+                       "angle, °",
+                       work,
+                       push,
+                       "<b>Torch angles</b> from the bisector <i class=\"value\"></i>work, towards flank 1 "
+                       "<i class=\"flank1\"></i>travel, pointing ahead",
+                       1};
 
 }  // namespace
 

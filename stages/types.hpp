@@ -158,7 +158,8 @@ struct SaddleParameters {
     std::optional<Measured> offset_mm;         ///< between the axes, or of a sphere's centre from the branch's axis
 };
 
-/// Where the seam is for sure but for one time in twenty: within this distance, across travel, of the model at a station.
+/// Where the seam is for sure but for one time in twenty: within this distance, across travel, of the model at a
+/// station.
 struct BandSample {
     double station_mm = 0;
     double half_width_mm = 0;

@@ -18,8 +18,8 @@ struct ViewShares {
     Eigen::VectorXd by_normal;  ///< 1 number a view
 };
 
-/// Of place i of a way, across flank k: measured by straight lines through the points about it, over their distances
-/// from the seam; by their mean, where it is a wall whose angle is known.
+/// Of place i of a way, across flank k: measured by a parabola through the points about it, over their distances from
+/// the seam; by their mean, where it is a wall whose angle is known.
 ViewShares shares_of_window(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t i, std::size_t k);
 
 /// The places of a seam, and with what they were measured.
@@ -28,14 +28,15 @@ struct MeasuredWay {
     std::vector<TrackPoint>* places;
 };
 
-/// A mixed linear model (Henderson 1975) of the mean distances at which views lie off each flank's surface, stretch by
-/// stretch: each view has a shift of its own, normal with a common variance along each axis, and shows each flank off
-/// it by a bias of its own; where the flank truly lies is free on every stretch. How the variance of what views differ
-/// by is divided between shifts and biases, and how much more than white the noise is, is what makes the scan most
-/// likely. Shifts that all views have in common are in no scan: they stay as unknown as before.
+/// A mixed linear model (Henderson 1975) of how far views lie off each other on the flanks of a scan, stretch by
+/// stretch. Each view has a shift of its own, normal with the same variance along each axis. It shows each flank off by
+/// a bias of its own besides: noise that its rows share all along the flank, the less the more points it has there; a
+/// view that hardly sees a flank sees it beside a shadow. The surface under the points is free on every stretch. How
+/// large biases and noise are, in the variance that the points' scatter says, is what makes the scan most likely. The
+/// shift that all views have in common is in no scan: it stays as unknown as before.
 class ViewShifts {
 public:
-    /// Flank k of way w is number 2 w + k. `registration` (mm): 1-sigma of shift and bias together; 0: there are none.
+    /// Flank k of way w is number 2 w + k. `registration` (mm): 1-sigma of a shift along one axis; 0: there are none.
     ViewShifts(std::span<const MeasuredWay> ways, double registration);
 
     std::size_t views() const { return views_; }
@@ -49,6 +50,7 @@ public:
 
 private:
     struct Flank;
+    /// `noise` and `bias`: their variances over that of as many points with independent noise.
     double settle(const std::vector<Flank>& flanks, double shift_variance, double noise, double bias);
 
     std::size_t views_ = 1;

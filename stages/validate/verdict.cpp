@@ -54,8 +54,8 @@ void summarise(Deviation& result, const ValidateOptions& options) {
     const bool covered = result.coverage >= options.min_coverage, inside = guarded <= result.tolerance_mm;
     result.pass = covered && inside && !distance.empty();
     result.verdict = std::string(result.pass ? "pass" : "fail") + ": p99.7 " + fixed(result.p997_mm, 3) +
-                     " mm + guard " + fixed(guard, 3) + " mm " + (inside ? "within" : "exceeds") +
-                     " tolerance " + fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
+                     " mm + guard " + fixed(guard, 3) + " mm " + (inside ? "within" : "exceeds") + " tolerance " +
+                     fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
                      " % of the seam measured" +
                      (covered ? "" : ", less than " + fixed(100 * options.min_coverage, 1) + " %");
     if (options.tolerance_mm == 0 && result.tolerance_mm > kWide) {
