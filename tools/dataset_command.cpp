@@ -87,7 +87,6 @@ Command dataset_command(CLI::App& program) {
     app->footer(
         "Examples:\n"
         "  seampath dataset list\n"
-        "  seampath dataset make pipe-on-pipe --seed 3 --out data/pipe3\n"
         "  seampath dataset make tee --preset metrology --set scene.lean_deg=20 --out data/tee\n"
         "  seampath dataset run datasets/suites/smoke --out out/smoke\n");
     const auto given = std::make_shared<DatasetArguments>();

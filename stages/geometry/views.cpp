@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "stages/geometry/robust.hpp"
 
@@ -71,6 +72,29 @@ std::vector<Chunk> chunks_of(std::span<const Eigen::Vector3f> points, std::size_
     return chunks;
 }
 
+// Whether points that follow each other lie beside each other: a chunk comes to cells of the few before it far more often
+// than to any others. A scan that was shuffled, or thinned through a grid, tells nothing of views.
+bool in_order(const std::vector<Chunk>& chunks) {
+    constexpr std::size_t kBefore = 5, kTried = 100;
+    constexpr double kMoreOften = 3;
+    std::unordered_set<std::uint64_t> all;
+    for (std::size_t i = 0; i < chunks.size(); i += 4) {
+        all.insert(chunks[i].cells.begin(), chunks[i].cells.end());
+    }
+    double met = 0, expected = 0;
+    for (std::size_t at = kBefore; at < chunks.size(); at += 1 + chunks.size() / kTried) {
+        std::unordered_set<std::uint64_t> before;
+        for (std::size_t i = at - kBefore; i < at; ++i) {
+            before.insert(chunks[i].cells.begin(), chunks[i].cells.end());
+        }
+        for (const std::uint64_t cell : chunks[at].cells) {
+            met += before.contains(cell);
+        }
+        expected += static_cast<double>(before.size() * chunks[at].cells.size()) / static_cast<double>(all.size());
+    }
+    return met > kMoreOften * expected;
+}
+
 // The chunks, ascending, with which another view begins at the latest (forwards) or at the earliest (backwards).
 std::vector<std::size_t> returns_of(const std::vector<Chunk>& chunks, bool backwards) {
     std::vector<std::size_t> starts;
@@ -115,6 +139,9 @@ std::vector<std::size_t> view_starts(std::span<const Eigen::Vector3f> points) {
     }
     const std::size_t size = std::max(kLeastInChunk, points.size() / kMostChunks);
     const std::vector<Chunk> chunks = chunks_of(points, size);
+    if (!in_order(chunks)) {
+        return starts;
+    }
     const std::vector<std::size_t> earliest = returns_of(chunks, true);
     std::size_t last = 0;
     for (const std::size_t latest : returns_of(chunks, false)) {

@@ -1,6 +1,8 @@
 #include "stages/geometry/views.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,6 +52,16 @@ TEST(Views, BeginWhereTheLookJumpsToPlacesNotSeenBefore) {
     ASSERT_EQ(starts.size(), 3u);
     EXPECT_NEAR(static_cast<double>(starts[1]), static_cast<double>(second), 600);  // four rows
     EXPECT_NEAR(static_cast<double>(starts[2]), static_cast<double>(third), 600);
+}
+
+TEST(Views, AreNotTakenFromPointsInNoOrder) {
+    std::vector<Eigen::Vector3f> points;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        add_view(points, 0, 80, seed);
+    }
+    EXPECT_EQ(view_starts(points).size(), 3u);
+    std::shuffle(points.begin(), points.end(), std::mt19937(1));
+    EXPECT_THAT(view_starts(points), ElementsAre(0));
 }
 
 TEST(Views, OneViewIsOne) {
