@@ -72,8 +72,8 @@ std::vector<Chunk> chunks_of(std::span<const Eigen::Vector3f> points, std::size_
     return chunks;
 }
 
-// Whether points that follow each other lie beside each other: a chunk comes to cells of the few before it far more often
-// than to any others. A scan that was shuffled, or thinned through a grid, tells nothing of views.
+// Whether points that follow each other lie beside each other: a chunk comes to cells of the few before it far more
+// often than to any others. A scan that was shuffled, or thinned through a grid, tells nothing of views.
 bool in_order(const std::vector<Chunk>& chunks) {
     constexpr std::size_t kBefore = 5, kTried = 100;
     constexpr double kMoreOften = 3;
