@@ -72,23 +72,29 @@ std::vector<Chunk> chunks_of(std::span<const Eigen::Vector3f> points, std::size_
     return chunks;
 }
 
-// Whether points that follow each other lie beside each other: a chunk comes to cells of the few before it far more
+// Whether points that follow each other lie beside each other: a chunk comes to places of the few before it far more
 // often than to any others. A scan that was shuffled, or thinned through a grid, tells nothing of views.
 bool in_order(const std::vector<Chunk>& chunks) {
-    constexpr std::size_t kBefore = 5, kTried = 100;
-    constexpr double kMoreOften = 3;
+    constexpr std::size_t kTried = 30;
+    constexpr double kMoreOften = 1.5;
+    constexpr std::uint64_t kPlace = ~std::uint64_t{3 | 3 << 12 | 3 << 24};  // four cells each way: rows are near then
+    const auto add_places = [](const Chunk& chunk, std::unordered_set<std::uint64_t>& places) {
+        for (const std::uint64_t cell : chunk.cells) {
+            places.insert(cell & kPlace);
+        }
+    };
     std::unordered_set<std::uint64_t> all;
     for (std::size_t i = 0; i < chunks.size(); i += 4) {
-        all.insert(chunks[i].cells.begin(), chunks[i].cells.end());
+        add_places(chunks[i], all);
     }
     double met = 0, expected = 0;
-    for (std::size_t at = kBefore; at < chunks.size(); at += 1 + chunks.size() / kTried) {
+    for (std::size_t at = kBehind; at < chunks.size(); at += 1 + chunks.size() / kTried) {
         std::unordered_set<std::uint64_t> before;
-        for (std::size_t i = at - kBefore; i < at; ++i) {
-            before.insert(chunks[i].cells.begin(), chunks[i].cells.end());
+        for (std::size_t i = at - kBehind; i < at; ++i) {
+            add_places(chunks[i], before);
         }
         for (const std::uint64_t cell : chunks[at].cells) {
-            met += before.contains(cell);
+            met += before.contains(cell & kPlace);
         }
         expected += static_cast<double>(before.size() * chunks[at].cells.size()) / static_cast<double>(all.size());
     }
