@@ -42,15 +42,14 @@ fs::path find_browser() {
     }
     throw InputError(
         "report: no browser to print with was found: chromium, chromium-browser, google-chrome or google-chrome-stable "
-        "on "
-        "the PATH was needed; install one (Debian: apt install chromium), or open report.html and print it there");
+        "on the PATH was needed; install one (Debian: apt install chromium), or open report.html and print it there");
 }
 
 /// A folder that vanishes with its content.
 class ScratchFolder {
 public:
     ScratchFolder() {
-        std::string pattern = (fs::temp_directory_path() / "seampath-print-XXXXXX").string();
+        std::string pattern = (fs::temp_directory_path() / "seampath-print-").string() + std::string(6, 'X');
         if (mkdtemp(pattern.data()) == nullptr) {
             throw InputError("report: cannot create a folder in " + fs::temp_directory_path().string() +
                              "; a writable one was needed; set TMPDIR");

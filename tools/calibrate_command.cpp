@@ -41,17 +41,6 @@ std::optional<StoredFixture> accepted_in(const fs::path& out) {
     return stored.accepted ? std::optional(stored) : std::nullopt;
 }
 
-void accept(FixtureCalibration& c, bool measured_well, const std::string& reason) {
-    if (!measured_well) {
-        throw InputError("--accept: this calibration did not pass and can't be accepted: " + c.frame.faults.front());
-    }
-    c.accepted = Acceptance{c.date, reason};
-    if (c.change) {  // what moved is accepted with the reason
-        c.frame.notes.insert(c.frame.notes.end(), c.frame.faults.begin(), c.frame.faults.end());
-        c.frame.faults.clear();
-    }
-}
-
 int fixture(const FixtureArguments& given) {
     check_acceptance(given.accept, given.reason);
     ReadOptions read_options;

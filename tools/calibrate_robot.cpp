@@ -17,15 +17,6 @@ namespace fs = std::filesystem;
 constexpr const char* kAccepted = "result.json";
 constexpr const char* kNotAccepted = "candidate.json";
 
-void accept(RobotCalibration& c, bool measured_well, const std::string& reason) {
-    if (!measured_well) {
-        throw InputError("--accept: this calibration did not pass and can't be accepted: " + c.frame.faults.front());
-    }
-    c.accepted = Acceptance{c.date, reason};
-    c.frame.notes.insert(c.frame.notes.end(), c.frame.faults.begin(), c.frame.faults.end());  // it moved, with a reason
-    c.frame.faults.clear();
-}
-
 int run_robot(const RobotArguments& given, RobotMeasurement measured) {
     check_acceptance(given.accept, given.reason);
     measured.options.limit_mm = given.limit_mm > 0 ? given.limit_mm : measured.options.limit_mm;
