@@ -76,7 +76,8 @@ private:
         const MarkerCells& marker = markers_[static_cast<std::size_t>(number)];
         const double share = board_.size_mm / board_.pitch_mm;
         const Vector2d cell = (at - Vector2d::Constant(0.5 * (1 - share))) / share * marker.side;
-        const int column = static_cast<int>(std::floor(cell.x())), row = static_cast<int>(std::floor(cell.y()));
+        const auto column = static_cast<std::ptrdiff_t>(std::floor(cell.x())),
+                   row = static_cast<std::ptrdiff_t>(std::floor(cell.y()));
         const bool inside = column >= 0 && row >= 0 && column < marker.side && row < marker.side;
         return inside && !marker.white[static_cast<std::size_t>(row * marker.side + column)];
     }
@@ -115,7 +116,7 @@ void blur(GreyImage& image, double sigma, bool along_rows) {
         for (int column = 0; column < image.width; ++column) {
             double grey = 0;
             for (int k = -reach; k <= reach; ++k) {
-                grey += weight[static_cast<std::size_t>(k + reach)] / sum *
+                grey += weight.begin()[k + reach] / sum *
                         (along_rows ? sharp.clamped(column + k, row) : sharp.clamped(column, row + k));
             }
             image.value[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
@@ -142,7 +143,8 @@ GreyImage draw_board(const Board& board, const CameraModel& camera, const Isomet
                            d = corner(column + 1, row + 1);
             double grey = 0;
             for (int i = 0; i < kParts * kParts; ++i) {
-                const double x = (i % kParts + 0.5) / kParts, y = (i / kParts + 0.5) / kParts;
+                const int part_row = i / kParts;
+                const double x = (i % kParts + 0.5) / kParts, y = (part_row + 0.5) / kParts;
                 grey += print.grey((1 - y) * ((1 - x) * a + x * b) + y * ((1 - x) * c + x * d), light);
             }
             image.value.push_back(static_cast<float>(grey / (kParts * kParts)));

@@ -71,7 +71,7 @@ std::vector<Spot> spots_on(const PhotoPicture& picture, int count, double radius
 std::vector<Spot> spots_anywhere(const PhotoPicture& picture, int count, double radius, const Random& random) {
     std::vector<Spot> spots;
     for (int i = 0; i < count; ++i) {
-        const auto k = static_cast<std::uint64_t>(2 * i);
+        const auto k = 2 * static_cast<std::uint64_t>(i);
         spots.push_back({{picture.width * random.uniform(k), picture.height * random.uniform(k + 1)}, radius});
     }
     return spots;
@@ -155,7 +155,7 @@ GreyImage blurred(const GreyImage& image, double sigma, bool along_rows) {
         for (int c = 0; c < image.width; ++c) {
             double grey = 0;
             for (int i = -reach; i <= reach; ++i) {
-                grey += weight[static_cast<std::size_t>(i + reach)] *
+                grey += weight.begin()[i + reach] *
                         static_cast<double>(along_rows ? image.clamped(c + i, r) : image.clamped(c, r + i));
             }
             result.value.push_back(static_cast<float>(grey / sum));

@@ -59,10 +59,10 @@ std::string written(const Json& json) {
 
 Json map_json(const CameraCalibration& r) {
     Json rows = Json::array();
-    for (int row = 0; row < CameraCalibration::kMapRows; ++row) {
+    for (std::size_t row = 0; row < CameraCalibration::kMapRows; ++row) {
         Json cells = Json::array();
-        for (int column = 0; column < CameraCalibration::kMapColumns; ++column) {
-            const ResidualCell& c = r.map[static_cast<std::size_t>(row * CameraCalibration::kMapColumns + column)];
+        for (std::size_t column = 0; column < CameraCalibration::kMapColumns; ++column) {
+            const ResidualCell& c = r.map[row * CameraCalibration::kMapColumns + column];
             cells.push_back({{"points", c.points}, {"mean_px", {c.mean_px.x(), c.mean_px.y()}}, {"rms_px", c.rms_px}});
         }
         rows.push_back(std::move(cells));
@@ -124,7 +124,7 @@ CameraModel read_camera_result(const std::filesystem::path& file) {
     if (root.value("verdict", Json()) != "pass") {
         throw InputError("camera: the calibration " + file.string() + " did not pass; calibrate the camera again");
     }
-    const CameraModel camera = camera_from(root.value("camera", Json()), "/camera", problems);
+    CameraModel camera = camera_from(root.value("camera", Json()), "/camera", problems);
     if (!problems.empty()) {
         throw InputError("camera: " + file.string() + ": " + problems.front());
     }

@@ -33,7 +33,7 @@ fs::path find_browser() {
     for (const std::string_view name : kBrowsers) {
         for (std::size_t from = 0; from < paths.size();) {
             const std::size_t end = std::min(paths.find(':', from), paths.size());
-            const fs::path candidate = fs::path(paths.substr(from, end - from)) / name;
+            fs::path candidate = fs::path(paths.substr(from, end - from)) / name;
             if (access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate)) {
                 return candidate;
             }

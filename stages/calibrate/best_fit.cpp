@@ -122,7 +122,7 @@ FoundPose choose(const std::vector<FoundPose>& poses, std::size_t surfels, doubl
                                 " %; scan more of the part, or lower least_share");
         return poses.empty() ? FoundPose{} : poses.front();
     }
-    const FoundPose best = enough.front();
+    FoundPose best = enough.front();
     const auto fuller = std::find_if(enough.begin(), enough.end(), [&](const FoundPose& pose) {
         return best.held() && !pose.held() &&
                static_cast<double>(pose.seen) > kMuchMore * static_cast<double>(best.seen);

@@ -16,7 +16,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr int kAngleBins = 12;            // of 15 degrees, as Drost's
-constexpr int kTurnBins = 30;             // of 12 degrees
+constexpr std::size_t kTurnBins = 30;     // of 12 degrees
 constexpr std::size_t kReferences = 400;  // in the scene
 constexpr std::size_t kPeaks = 3;         // taken from each reference
 constexpr double kSamePlane = 0.2;        // cosine to the normals, and sine between them

@@ -57,7 +57,7 @@ void weigh(const TargetSurface& surface, std::span<const SidedPoint> points, dou
     scale.tail(3).setConstant(1 / std::sqrt(squares));
     const Eigen::MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-    const Eigen::VectorXd shares = eigen.eigenvalues();
+    const Eigen::VectorXd& shares = eigen.eigenvalues();
     if (shares[0] > weak_ratio * shares.mean()) {
         pose.information = std::exp(shares.array().log().mean());
     }

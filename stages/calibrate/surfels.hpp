@@ -66,7 +66,8 @@ public:
 
 private:
     std::size_t index(const Eigen::Vector3i& at) const {
-        return static_cast<std::size_t>((at.z() * count_.y() + at.y()) * count_.x() + at.x());
+        const auto n = count_.cast<std::size_t>(), i = at.cast<std::size_t>();
+        return (i.z() * n.y() + i.y()) * n.x() + i.x();
     }
     template <class F>
     void for_cells_about(const Eigen::Vector3d& p, double reach, const F& f) const;

@@ -106,12 +106,13 @@ void add_views(const Bundle& bundle, const BlockFit& fit, CameraCalibration& res
         points += view.points;
         for (Index k = 0; k < view.points; ++k) {
             const Vector2d& at = bundle.views[i].points[static_cast<std::size_t>(k)].pixel;
-            const auto cell = [](double x, int size, int cells) {
-                return std::clamp(static_cast<int>((x + 0.5) / size * cells), 0, cells - 1);
+            const auto cell = [](double x, int size, std::size_t cells) {
+                const double share = std::max(0.0, (x + 0.5) / size);
+                return std::min(static_cast<std::size_t>(share * static_cast<double>(cells)), cells - 1);
             };
-            ResidualCell& c = result.map[static_cast<std::size_t>(
-                cell(at.y(), bundle.camera.height, CameraCalibration::kMapRows) * CameraCalibration::kMapColumns +
-                cell(at.x(), bundle.camera.width, CameraCalibration::kMapColumns))];
+            ResidualCell& c = result.map[cell(at.y(), bundle.camera.height, CameraCalibration::kMapRows) *
+                                             CameraCalibration::kMapColumns +
+                                         cell(at.x(), bundle.camera.width, CameraCalibration::kMapColumns)];
             c.mean_px += r.segment<2>(2 * k);
             c.rms_px += r.segment<2>(2 * k).squaredNorm();
             ++c.points;
@@ -145,14 +146,13 @@ void add_missing(CameraCalibration& result) {
                                 "to 45 degrees, about both axes");
     }
     std::string empty;
-    for (int part = 0; part < 9; ++part) {
+    for (std::size_t part = 0; part < 9; ++part) {
         int points = 0;
-        for (int row = 0; row < CameraCalibration::kMapRows; ++row) {
-            for (int column = 0; column < CameraCalibration::kMapColumns; ++column) {
+        for (std::size_t row = 0; row < CameraCalibration::kMapRows; ++row) {
+            for (std::size_t column = 0; column < CameraCalibration::kMapColumns; ++column) {
                 const bool in = row * 3 / CameraCalibration::kMapRows == part / 3 &&
                                 column * 3 / CameraCalibration::kMapColumns == part % 3;
-                points +=
-                    in ? result.map[static_cast<std::size_t>(row * CameraCalibration::kMapColumns + column)].points : 0;
+                points += in ? result.map[row * CameraCalibration::kMapColumns + column].points : 0;
             }
         }
         if (points == 0) {

@@ -54,7 +54,7 @@ inline constexpr int kCameraNumbers = 9;
 using CameraCovariance = Eigen::Matrix<double, kCameraNumbers, kCameraNumbers>;
 
 struct CameraCalibration {
-    static constexpr int kMapColumns = 8, kMapRows = 6;
+    static constexpr std::size_t kMapColumns = 8, kMapRows = 6;
     CameraModel camera;
     CameraCovariance covariance = CameraCovariance::Zero();  ///< in the order of kCameraNumbers; px and 1
     std::vector<ViewResult> views;

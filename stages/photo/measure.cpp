@@ -99,16 +99,16 @@ double width_of_profile(const GreyImage& image, const std::vector<TrackPlace>& t
     const double guess = track[middle].width;
     const int reach = static_cast<int>(std::lround(3 * guess)) + 6, far = static_cast<int>(std::lround(2 * guess)) + 2;
     const int core = static_cast<int>(guess / 4);
-    std::vector<double> profile(static_cast<std::size_t>(2 * reach + 1), 0);
+    std::vector<double> profile(2 * static_cast<std::size_t>(reach) + 1, 0);
+    const auto centre = profile.begin() + reach;
     for (std::size_t i = middle > kReach ? middle - kReach : 0; i < std::min(track.size(), middle + kReach + 1); ++i) {
         const double sign = track[i].kind == LineKind::bright ? 1 : -1;
         for (int u = -reach; track[i].seen && track[i].kind == track[middle].kind && u <= reach; ++u) {
-            profile[static_cast<std::size_t>(u + reach)] +=
-                sign * static_cast<double>(image.clamped(static_cast<int>(i) * kTrackStep,
-                                                         static_cast<int>(std::lround(track[i].y)) + u));
+            centre[u] += sign * static_cast<double>(image.clamped(static_cast<int>(i) * kTrackStep,
+                                                                  static_cast<int>(std::lround(track[i].y)) + u));
         }
     }
-    const auto at = [&](int u) { return profile[static_cast<std::size_t>(u + reach)]; };
+    const auto at = [&](int u) { return centre[u]; };
     const auto mean = [&](int begin, int end) {
         double sum = 0;
         for (int u = begin; u <= end; ++u) {

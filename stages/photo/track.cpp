@@ -66,7 +66,8 @@ public:
             sums.push_back(sums.back() + std::log(static_cast<double>(kBlack) + sum / (2 * kHalfMean + 1)));
         }
         const auto mean = [&](int begin, int count) {
-            return (sums[static_cast<std::size_t>(begin + count)] - sums[static_cast<std::size_t>(begin)]) / count;
+            const auto first = sums.begin() + begin;
+            return (first[count] - *first) / count;
         };
         std::vector<double> heights;
         for (int u = -reach_; u <= reach_; ++u) {
@@ -93,7 +94,7 @@ std::vector<int> best_offsets(const std::vector<std::vector<double>>& heights, i
         all.push_back(*std::max_element(column.begin(), column.end()));
     }
     const double unit = std::max(1e-6, quantile(all, 0.5));
-    const auto rows = static_cast<std::size_t>(2 * reach + 1);
+    const auto rows = 2 * static_cast<std::size_t>(reach) + 1;
     std::vector<double> worth(rows, 0);
     std::vector<std::int8_t> from(heights.size() * rows, 0);
     for (std::size_t k = 0; k < heights.size(); ++k) {
@@ -136,7 +137,7 @@ std::vector<TrackPlace> track_line(const GreyImage& image, const LineEvidence& e
     const std::vector<int> offsets = best_offsets(heights, reach);
     for (std::size_t k = 0; k < places.size(); ++k) {
         places[k].y += offsets[k];
-        places[k].seen = places[k].seen && heights[k][static_cast<std::size_t>(offsets[k] + reach)] > 0;
+        places[k].seen = places[k].seen && heights[k].begin()[offsets[k] + reach] > 0;
     }
     return places;
 }

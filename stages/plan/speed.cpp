@@ -146,7 +146,7 @@ void SpeedProfile::slow_down(const TorchPath& path, const PlanOptions& o) {
     ceiling = ceiling_of(path, o, static_cast<int>(std::ceil(length_ / step)), step);
     if (o.run_in == RunIn::within) {  // one speed for as long as run-in and run-out take
         const double ramp = Ramp(o.speed_mm_s, o.acceleration_mm_s2, o.jerk_mm_s3).length();
-        const std::ptrdiff_t ends = static_cast<std::ptrdiff_t>(std::ceil(ramp / step)) + 2 * half + 1;
+        const std::ptrdiff_t ends = static_cast<std::ptrdiff_t>(std::ceil(ramp / step)) + 2 * std::ptrdiff_t{half} + 1;
         const std::ptrdiff_t whole = std::ssize(ceiling), part = 2 * ends < whole ? ends : whole;
         std::fill_n(ceiling.begin(), part, *std::min_element(ceiling.begin(), ceiling.begin() + part));
         std::fill_n(ceiling.rbegin(), part, *std::min_element(ceiling.rbegin(), ceiling.rbegin() + part));
@@ -175,7 +175,7 @@ void SpeedProfile::smooth(const std::vector<double>& ceiling, double step, int h
     double time = 0;
     double slope = (once[static_cast<std::size_t>(half)] - once[0]) / (half * step);
     for (int k = 0; k < count; ++k) {
-        const auto first = static_cast<std::size_t>(k), last = static_cast<std::size_t>(k + half);
+        const auto first = static_cast<std::size_t>(k), last = first + static_cast<std::size_t>(half);
         double twice = 0.5 * (once[first] + once[last]);
         for (std::size_t i = first + 1; i < last; ++i) {
             twice += once[i];

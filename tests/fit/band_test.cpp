@@ -49,7 +49,7 @@ Coverage coverage(const Curve& curve, bool closed, int points, double sigma, int
         const auto error = [&](int i, int of) {  // of neighbours together, of variance 1
             double sum = 0;
             for (int k = 0; k < share_errors_with; ++k) {
-                sum += random.normal(static_cast<std::uint64_t>(2 * ((i + k) % points) + of));
+                sum += random.normal(2 * static_cast<std::uint64_t>((i + k) % points) + static_cast<std::uint64_t>(of));
             }
             return sum / std::sqrt(share_errors_with);
         };
@@ -110,7 +110,7 @@ Errors saddle_errors(const SaddleCurve& saddle, std::uint64_t seed) {
     seam.closed = true;
     for (int i = 0; i < kPoints; ++i) {
         const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / kPoints));
-        const auto k = static_cast<std::uint64_t>(8 * i);
+        const auto k = 8 * static_cast<std::uint64_t>(i);
         const Vector3d across = (at.n2 - at.n2.dot(at.n1) * at.n1).normalized();
         Vector3d p = at.p + kSigma / std::sqrt(2.0) * (random.normal(k) * at.n1 + random.normal(k + 1) * across);
         if (random.uniform(k + 2, 0, 1) < 0.05) {

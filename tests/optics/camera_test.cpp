@@ -164,7 +164,7 @@ TEST(FindBoard, EveryKindIsFoundToAFractionOfAPixel) {
                   << std::sqrt(squares / static_cast<double>(count)) << " px\n";
         EXPECT_LE(std::sqrt(squares / static_cast<double>(count)), 0.1);
     }
-    EXPECT_TRUE(find_board({640, 480, 255, std::vector<float>(640 * 480, 20)}, test::corners()).empty());
+    EXPECT_TRUE(find_board({640, 480, 255, std::vector<float>(std::size_t{640} * 480, 20)}, test::corners()).empty());
 }
 
 }  // namespace camera_test

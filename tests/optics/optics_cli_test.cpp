@@ -131,8 +131,8 @@ TEST_F(OpticsCli, BadInputIsOneClearLineEach) {
     const auto views = [&](Json changed, Json images = Json::array({"a.png"})) {
         return Json{{"name", "top"}, {"board", std::move(changed)}, {"images", std::move(images)}};
     };
-    write("a.png", png_bytes({64, 48, 255, std::vector<float>(64 * 48, 9)}));
-    write("b.png", png_bytes({48, 48, 255, std::vector<float>(48 * 48, 9)}));
+    write("a.png", png_bytes({64, 48, 255, std::vector<float>(std::size_t{64} * 48, 9)}));
+    write("b.png", png_bytes({48, 48, 255, std::vector<float>(std::size_t{48} * 48, 9)}));
     Json changed = board;
     changed["kind"] = "chesboard";
     EXPECT_THAT(error("camera", views(changed)), HasSubstr("did you mean \"chessboard\"?"));

@@ -23,7 +23,7 @@ Seam saddle_seam(const SaddleCurve& saddle, int points, double noise = 0) {
     seam.closed = true;
     for (int i = 0; i < points; ++i) {
         const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / points));
-        const auto k = static_cast<std::uint64_t>(3 * i);
+        const auto k = 3 * static_cast<std::uint64_t>(i);
         const Vector3d off(random.normal(k), random.normal(k + 1), random.normal(k + 2));
         seam.points.push_back({at.p + noise * off, at.n1, at.n2, std::max(0.01, std::sqrt(2.0) * noise), false});
     }
