@@ -180,17 +180,21 @@ WholeFlank shrunk(std::span<const FlankPlace> places, const FlankPool& pool, std
     return whole;
 }
 
-// Whether the windows' own surfaces lie off this one by more than both are unsure of.
-bool contradicted(std::span<const FlankPlace> places, const WholeFlank& whole) {
+// Whether the windows' own surfaces lie off this one by more than both are unsure of. Windows know of the noise of
+// points, but not that each mixes the views in its own way, which views off each other turn into more: windows side by
+// side tell by how much.
+bool contradicted(std::span<const FlankPlace> places, std::size_t reach, const WholeFlank& whole) {
     constexpr double kMost = 2;  // robust 1-sigma of the differences, in their own sigmas
+    std::vector<std::optional<Departure>> off(places.size());
     std::vector<double> squares;
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (places[i].measured) {
-            const double off = whole.surface.distance(places[i].p) - whole.at[i].value;
-            squares.push_back(off * off / (std::pow(places[i].sigma, 2) + whole.at[i].variance));
+            off[i] = {whole.surface.distance(places[i].p) - whole.at[i].value,
+                      std::pow(places[i].sigma, 2) + whole.at[i].variance};
+            squares.push_back(off[i]->value * off[i]->value / off[i]->variance);
         }
     }
-    return quantile(squares, 0.5) > kMost * kMost * kMedianSquare;
+    return quantile(squares, 0.5) > kMost * kMost * kMedianSquare * std::max(1.0, noise_share(off, 2 * reach + 1));
 }
 
 }  // namespace
@@ -212,7 +216,7 @@ FlankFit fit_whole_flank(std::span<const FlankPlace> places, const FlankPool& po
             continue;
         }
         WholeFlank whole = shrunk(places, pool, rules.reach, *surface);
-        if ((!best.whole || whole.variance < best.whole->variance) && !contradicted(places, whole)) {
+        if ((!best.whole || whole.variance < best.whole->variance) && !contradicted(places, pool.reach, whole)) {
             best.nearest = surface;
             best.whole = std::move(whole);
         }
