@@ -75,8 +75,7 @@ void leave_out(std::vector<Crease>& creases, const std::vector<char>& claimed) {
     std::erase_if(creases, [&](const Crease&) { return claimed[i++] != 0; });
 }
 
-// Whether the seam runs beside a butt joint or groove, within what lies between their plates: a plate that stands
-// higher than the other is no lap on it.
+// Whether the seam runs beside a butt joint or groove, within what lies between their plates.
 bool beside_groove(const Seam& seam, const std::vector<Seam>& found, double spacing) {
     const auto known = [](const Measured& m) { return std::isnan(m.value) ? 0 : std::abs(m.value); };
     std::size_t beside = 0;
@@ -95,6 +94,11 @@ bool beside_groove(const Seam& seam, const std::vector<Seam>& found, double spac
     return 2 * beside > seam.points.size();
 }
 
+// The top edges of a groove are no butt joint, and a plate that stands higher than the other is no lap on it.
+void leave_out_beside_grooves(std::vector<Seam>& seams, const std::vector<Seam>& found, double spacing) {
+    std::erase_if(seams, [&](const Seam& seam) { return beside_groove(seam, found, spacing); });
+}
+
 // Each kind of joint in turn: what one explains is not offered to the next. `creases` are those of `around`.
 void find_joints(Extraction& result, const Around& around, std::vector<Crease>& creases,
                  const ExtractOptions& options) {
@@ -108,6 +112,7 @@ void find_joints(Extraction& result, const Around& around, std::vector<Crease>& 
     const std::vector<Border> borders = butt || lap ? find_borders(around) : std::vector<Border>{};
     if (butt) {
         Butts butts = find_butts(around, borders, options.min_length_mm);
+        leave_out_beside_grooves(butts.seams, result.seams, around.field.overall.spacing);
         take(result, std::move(butts.seams), std::move(butts.remarks));
     }
     std::vector<Track> of_laps;
@@ -116,9 +121,7 @@ void find_joints(Extraction& result, const Around& around, std::vector<Crease>& 
             find_laps(around, borders, {options.max_step_mm, options.joint == JointChoice::lap, options.min_length_mm});
         result.registration_mm = std::max(result.registration_mm, laps.registration_mm);
         of_laps = std::move(laps.tracks);
-        std::erase_if(laps.seams, [&](const Seam& seam) {
-            return beside_groove(seam, result.seams, around.field.overall.spacing);
-        });
+        leave_out_beside_grooves(laps.seams, result.seams, around.field.overall.spacing);
         take(result, std::move(laps.seams), std::move(laps.remarks));
     }
     const bool fillet = asked(options, JointChoice::fillet);

@@ -29,6 +29,10 @@ struct Plate {
     std::vector<Track> tracks;
 };
 
+bool same_thickness(const Plate& plate, double thickness) {
+    return std::abs(plate.thickness - thickness) < kSameThickness * plate.thickness;
+}
+
 // Whether the sheet goes on from its border for `width` mm along `inwards`, holes aside.
 bool goes_on(const Around& around, const Border& border, const Eigen::Vector3d& inwards, double width) {
     const ScanScale scale = around.field.at(border.p);
@@ -115,11 +119,31 @@ double thickness_along(const Around& around, const Track& track, double guess) {
     return heights.empty() ? guess : quantile(heights, 0.5);
 }
 
+// Edges of which nothing but the two tops is seen: nobody can tell where their foot is.
+void tell_of_unseen_sides(const Around& around, const std::vector<Border>& borders, const LapsAsked& asked,
+                          const std::vector<Plate>& plates, std::vector<Seed> unseen, Laps& result) {
+    constexpr std::size_t kChance = 10;  // pieces of border
+    if (unseen.size() < kChance) {
+        return;
+    }
+    const auto middle = unseen.begin() + static_cast<std::ptrdiff_t>(unseen.size() / 2);
+    std::nth_element(unseen.begin(), middle, unseen.end(),
+                     [](const Seed& a, const Seed& b) { return a.thickness < b.thickness; });
+    const bool measured = std::any_of(plates.begin(), plates.end(),
+                                      [&](const Plate& plate) { return same_thickness(plate, middle->thickness); });
+    if (!measured && (asked.by_any_step || is_part(around, borders, middle->foot.p, middle->foot.n1))) {
+        result.remarks.push_back("a plate " + fixed(middle->thickness, 1) +
+                                 " mm thick lies on another one, but hardly anything is seen of its side: no lap was "
+                                 "measured there; scan it from that side, too");
+    }
+}
+
 // The upper plates; edges that lie on a table become tracks of the result, and remarks.
 std::vector<Plate> follow_all(const Around& around, const std::vector<Border>& borders, const LapsAsked& asked,
                               Laps& result) {
     std::vector<Plate> plates;
     std::vector<Track> taken, &tables = result.tracks;
+    std::vector<Seed> unseen;
     for (const Border& border : borders) {
         const auto seed = seed_of(around, border, asked);
         const auto known = [&](const std::vector<Track>& tracks) {
@@ -134,6 +158,7 @@ std::vector<Plate> follow_all(const Around& around, const std::vector<Border>& b
         tracker.wall = seed->thickness;
         auto track = follow(tracker, seed->foot, taken);
         if (!track || track->points.size() < 6) {
+            unseen.push_back(*seed);
             continue;
         }
         if (!asked.by_any_step && !is_part(around, borders, seed->foot.p, seed->foot.n1)) {
@@ -146,15 +171,15 @@ std::vector<Plate> follow_all(const Around& around, const std::vector<Border>& b
         }
         taken.push_back(*track);
         const double thickness = thickness_along(around, *track, seed->thickness);
-        auto plate = std::find_if(plates.begin(), plates.end(), [&](const Plate& p) {
-            return std::abs(p.thickness - thickness) < kSameThickness * p.thickness;
-        });
+        auto plate =
+            std::find_if(plates.begin(), plates.end(), [&](const Plate& p) { return same_thickness(p, thickness); });
         if (plate == plates.end()) {
             plates.push_back({thickness, {}});
             plate = plates.end() - 1;
         }
         plate->tracks.push_back(std::move(*track));
     }
+    tell_of_unseen_sides(around, borders, asked, plates, std::move(unseen), result);
     return plates;
 }
 
