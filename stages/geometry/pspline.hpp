@@ -55,7 +55,8 @@ public:
     double freedom() const { return inverse_.trace_with(normal_); }  ///< trace of the hat matrix
     double leverage(std::size_t point) const;                        ///< diagonal of the hat matrix, 0..1
     /// Variance of one coordinate at u when the points have 1 / w_i: that of a curve whose third derivative is as
-    /// random as the penalty has it, given the points (Wahba 1983). It holds what noise and stiffness do.
+    /// random as the penalty has it, given the points (Wahba 1983). It holds what noise and, on average along the
+    /// curve, stiffness do.
     double variance(double u) const;
     double roughness(std::size_t span) const;  ///< h |c'''|^2, 1/mm^3
     double freedom(std::size_t span,

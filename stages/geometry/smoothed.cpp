@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
+#include "stages/geometry/curve_sigma.hpp"
 #include "stages/geometry/outliers.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/geometry/smoothing.hpp"
@@ -118,47 +117,6 @@ void choose_smoothing(PenalisedSpline& spline, const CurvePoints& points, Smooth
     set_level(spline, points, s);
 }
 
-// What of the stated variance the points do not show: neighbours that share an error agree with each other, and what is
-// left over of them tells nothing of it. Within chance nothing is missing.
-double unseen_share(double seen, double freedom_left) {
-    constexpr double kChance = 4.3;  // three sigma of a median's square, over the root of the number
-    return seen < 1 - kChance / std::sqrt(std::max(freedom_left, 1.0)) ? 1 - seen : 0;
-}
-
-// At the knots and half way between them.
-std::vector<CurveSigma> sigma_along(const PenalisedSpline& spline, const CurvePoints& points,
-                                    const std::vector<double>& given, const Smoothing& s) {
-    std::vector<std::pair<double, double>> stated;  // parameter and variance of the points that count
-    std::vector<double> off;
-    for (std::size_t i = 0; i < points.p.size(); ++i) {
-        if (points.weight[i] > 0) {
-            stated.emplace_back(points.u[i], 1 / given[i]);
-            off.push_back((spline.at_point(i) - points.p[i]).norm() * std::sqrt(given[i]));
-        }
-    }
-    std::sort(stated.begin(), stated.end());
-    // Of distances in the plane the median's square is ln 2 of the mean square, and outliers don't touch it.
-    const auto used = static_cast<double>(off.size());
-    const double left = std::max(used - s.freedom, 1e-3 * used);
-    const double seen = std::pow(quantile(off, 0.5), 2) / std::numbers::ln2 * used / left;
-    const double unseen = unseen_share(seen, left);
-    const std::vector<double>& breaks = spline.breaks();
-    std::vector<CurveSigma> sigma;
-    const auto add = [&](double u) {
-        const auto next = std::lower_bound(stated.begin(), std::prev(stated.end()), std::pair(u, 0.0));
-        // Distances are of two directions: each has half of the variance.
-        sigma.push_back({u, std::sqrt(0.5 * (seen * spline.variance(u) + unseen * next->second))});
-    };
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-        add(breaks[k]);
-        add(0.5 * (breaks[k] + breaks[k + 1]));
-    }
-    if (!spline.curve().periodic) {
-        add(breaks.back());
-    }
-    return sigma;
-}
-
 }  // namespace
 
 Eigen::Vector3d middle_of(const Seam& seam) {
@@ -210,7 +168,7 @@ FittedCurve smooth_points(CurvePoints& points, bool closed) {
         weigh(points, given, loose.bulge, spline.curve());
         curve = spline.curve();
         if (round + 1 == kFootRounds) {
-            sigma = sigma_along(spline, points, given, s);
+            sigma = sigma_along(spline, s, points, given);
         } else {
             thin(breaks, s, spline);
             measure_along(points, breaks, curve);

@@ -72,27 +72,30 @@ std::vector<Window> windows_of(const PenalisedSpline& spline, const Smoothing& s
 
 void smooth_evenly(PenalisedSpline& spline, const CurvePoints& points, Smoothing& s) {
     constexpr int kMostSteps = 30;
-    constexpr double kNear = 0.1;                // of log lambda: a change of freedom by 2 %
-    constexpr double kMostStep = 8;              // of log lambda
-    double before = 0, slope = -0.25, step = 0;  // secant method for log lambda; the first slope is typical
+    constexpr double kNear = 0.1;                          // of log lambda: a change of freedom by 2 %
+    constexpr double kMostStep = 8;                        // of log lambda
+    double before = 0, slope = -0.25, step = 0, last = 0;  // secant method for log lambda; the first slope is typical
     for (int round = 0; round < kMostSteps; ++round) {
         solve(spline, points, s);
-        double rough = 0, free = 0, log_lambda = 0;
+        double rough = 0, free = 0, highest = 0;
         for (std::size_t k = 0; k < spline.spans(); ++k) {
             rough += spline.roughness(k);
             free += spline.freedom(k, s.lambda[k]);
-            log_lambda = std::max(log_lambda, s.lambda[k]);
+            highest = std::max(highest, s.lambda[k]);
         }
-        const double now = rough > 0 ? std::log(s.noise * free / rough / log_lambda) : 0;
-        if (std::abs(now) < kNear) {
+        const double now = rough > 0 ? std::log(s.noise * free / rough / highest) : 0;
+        // The spline may hold lambda where it is; and one that has not been solved with must not be left behind.
+        const bool held = round > 0 && std::abs(std::log(highest / last)) < kNear;
+        if (std::abs(now) < kNear || held || round + 1 == kMostSteps) {
             break;
         }
+        last = highest;
         if (round > 0 && step != 0) {
             slope = std::clamp((now - before) / step, -1.0, -0.15);
         }
         before = now;
         step = std::clamp(-now / slope, -kMostStep, kMostStep);
-        s.lambda.assign(spline.spans(), log_lambda * std::exp(step));
+        s.lambda.assign(spline.spans(), highest * std::exp(step));
     }
 }
 

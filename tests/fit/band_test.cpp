@@ -70,17 +70,54 @@ Coverage coverage(const Curve& curve, bool closed, int points, double sigma, int
     return coverage;
 }
 
-// A smoothing spline is stiffer than the seam where that bends hardest against the rest, and there, and at open ends,
-// the band is too narrow: one place in six may hold less often than in 17 of 20.
+/// Points of a saddle, of which a share is off by 2 mm anywhere to.
+Seam measured_saddle(const SaddleCurve& saddle, double off_share, std::uint64_t seed) {
+    constexpr int kPoints = 2000;
+    constexpr double kSigma = 0.1;
+    const Random random(seed, 0);
+    Seam seam;
+    seam.closed = true;
+    for (int i = 0; i < kPoints; ++i) {
+        const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / kPoints));
+        const auto k = 8 * static_cast<std::uint64_t>(i);
+        const Vector3d across = (at.n2 - at.n2.dot(at.n1) * at.n1).normalized();
+        Vector3d p = at.p + kSigma / std::sqrt(2.0) * (random.normal(k) * at.n1 + random.normal(k + 1) * across);
+        if (random.uniform(k + 2, 0, 1) < off_share) {
+            p += 2 * Vector3d(random.normal(k + 3), random.normal(k + 4), random.normal(k + 5)).normalized();
+        }
+        seam.points.push_back({p, at.n1, at.n2, kSigma, false});
+    }
+    return seam;
+}
+
 TEST(Band, HoldsTheTruthAsOftenAsItSays) {
     const auto check = [](const Coverage& c, const char* what) {
         EXPECT_GE(c.mean(), 0.93) << what;
         EXPECT_LE(c.mean(), 0.975) << what;
-        EXPECT_LE(c.places_below(0.85), kPlaces / 6) << what;
+        EXPECT_LE(c.places_below(0.85), kPlaces / 12) << what;
     };
     check(coverage(CircleCurve{30}, true, 250, 0.05), "circle");
     check(coverage(Straight{{0, 0, 0}, {90, 0, 0}}, false, 120, 0.05), "line");
     check(coverage(SineCurve{200, 18}, false, 300, 0.02), "sine");
+}
+
+// The crowns of nearly equal pipes, where a stiff curve is flatter than the seam: without its bias the band holds there
+// in two scans of three.
+TEST(Band, HoldsWhereTheSeamBendsHardest) {
+    const SaddleCurve saddle = pipes(600, 588);
+    constexpr int kScans = 60;
+    constexpr double kCrowns[] = {0.25, 0.75};
+    int held = 0;
+    for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
+        const SeamModel model = fit(measured_saddle(saddle, 0, seed), {}, spline_model());
+        const ArcLength arc(model.curve);
+        for (const double crown : kCrowns) {
+            const Vector3d truth = saddle.at(2 * kPi * crown).p;
+            const double u = nearest_parameter(model.curve, truth);
+            held += (position(model.curve, u) - truth).norm() <= half_width_at(model, arc.station(u)) ? 1 : 0;
+        }
+    }
+    EXPECT_GE(held, 0.86 * kScans * std::size(kCrowns));
 }
 
 // Windows of extraction overlap: neighbours are off together, and smoothing takes less of that away than it seems.
@@ -101,24 +138,10 @@ struct Errors {
     double rms = 0, max = 0;
 };
 
-/// Of the spline through a saddle's points, with 1 in 20 off by 2 mm anywhere to.
-Errors saddle_errors(const SaddleCurve& saddle, std::uint64_t seed) {
-    constexpr int kPoints = 2000, kLooks = 400;
-    constexpr double kSigma = 0.1;
-    const Random random(seed, 0);
-    Seam seam;
-    seam.closed = true;
-    for (int i = 0; i < kPoints; ++i) {
-        const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / kPoints));
-        const auto k = 8 * static_cast<std::uint64_t>(i);
-        const Vector3d across = (at.n2 - at.n2.dot(at.n1) * at.n1).normalized();
-        Vector3d p = at.p + kSigma / std::sqrt(2.0) * (random.normal(k) * at.n1 + random.normal(k + 1) * across);
-        if (random.uniform(k + 2, 0, 1) < 0.05) {
-            p += 2 * Vector3d(random.normal(k + 3), random.normal(k + 4), random.normal(k + 5)).normalized();
-        }
-        seam.points.push_back({p, at.n1, at.n2, kSigma, false});
-    }
-    const SeamModel model = fit(seam, {}, spline_model());
+/// Of the spline through a saddle's points.
+Errors saddle_errors(const SaddleCurve& saddle, double off_share, std::uint64_t seed) {
+    constexpr int kLooks = 400;
+    const SeamModel model = fit(measured_saddle(saddle, off_share, seed), {}, spline_model());
     Errors errors;
     for (int i = 0; i < kLooks; ++i) {
         const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / kLooks));
@@ -133,10 +156,19 @@ Errors saddle_errors(const SaddleCurve& saddle, std::uint64_t seed) {
 TEST(Fit, FollowsNoisySaddlesWithOutliers) {
     const SaddleCurve small = pipes(600, 150), large = pipes(600, 588);
     for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-        const Errors errors = saddle_errors(small, seed);
+        const Errors errors = saddle_errors(small, 0.05, seed);
         EXPECT_LE(errors.rms, 0.012) << seed;
         EXPECT_LE(errors.max, 0.03) << seed;
-        EXPECT_LE(saddle_errors(large, seed).rms, 0.035) << seed;
+        EXPECT_LE(saddle_errors(large, 0.05, seed).rms, 0.035) << seed;
+    }
+}
+
+// Smooth against its points: a curve as stiff as this is at the edge of what knots at every point can hold.
+TEST(Fit, FollowsDensePointsWithoutOutliers) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const Errors errors = saddle_errors(pipes(600, 150), 0, seed);
+        EXPECT_LE(errors.rms, 0.012) << seed;
+        EXPECT_LE(errors.max, 0.03) << seed;
     }
 }
 
