@@ -51,7 +51,7 @@ std::optional<PhotoLine> line_across(const GreyImage& image) {
     if (chosen.path.worth < kLeastWorth) {
         return std::nullopt;
     }
-    const auto track = detail::track_line(image, evidence, chosen.path, reduction);
+    const auto track = detail::track_line(image, evidence, chosen, reduction);
     PhotoLine line{detail::measure_line(image, track), 0, chosen.between_borders, chosen.worth, chosen.rival_worth};
     std::vector<double> widths;
     for (const detail::TrackPlace& place : track) {

@@ -37,9 +37,10 @@ struct PhotoLine {
 /// Texture shows many short lines; a seam is what agrees over the whole picture. So lines of many widths and slopes are
 /// measured in blocks, against what texture gives around them, and the path that is worth most is found by dynamic
 /// programming over places and slopes: it goes straight over tacks, holes and highlights. Of several lines side by side
-/// the one midway between two borders is the seam. About the path the ridge is measured to a fraction of a pixel
-/// (stages/geometry/steger.hpp) on the grey values themselves, and its points are taken together, robustly, over as far
-/// as the measurement reaches anyway.
+/// the one midway between two borders is the seam. The strip about it is laid out straight and searched again for lines
+/// about as wide, in it the ridge is measured to a fraction of a pixel (stages/geometry/steger.hpp), and a line as smooth
+/// as the measurement lets it be is laid through, robustly: flakes and holes are modelled. It ends at the picture's
+/// borders, or where what is not measured is longer than the line is smooth over.
 ///
 /// Fails: a scratch along the whole picture is a line like any other, and a joint whose sheets overlap shows one border
 /// and no line.

@@ -70,7 +70,8 @@ TEST(PhotoRun, AJointIsWeldedWhereThePhotographShowsIt) {
     EXPECT_GT(part.deviations[0].coverage, 0.8);
     int welds = 0;
     for (const Waypoint& waypoint : part.plan.waypoints) {
-        if (waypoint.kind == WaypointKind::weld) {
+        if (waypoint.kind == WaypointKind::weld_start || waypoint.kind == WaypointKind::weld ||
+            waypoint.kind == WaypointKind::weld_end) {
             EXPECT_LT(off_joint_mm(waypoint.p), 0.5 * kMmPerPx);
             EXPECT_LT((waypoint.q * Vector3d::UnitZ()).z(), -0.99) << "the torch comes from the camera's side";
             ++welds;
