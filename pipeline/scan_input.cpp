@@ -90,17 +90,24 @@ ScanInput scan_of_photo(const PhotoCapture& capture) {
     GreyImage image = picture_of(capture.image, capture.camera, decode_photograph);
     check_not_black(image, capture.image);
     ScanInput input;
+    Eigen::Isometry3d camera_from_plane = capture.camera_from_plane;
+    Matrix6 covariance = Matrix6::Zero();
+    if (!capture.plane_points.points.empty()) {
+        const BoardPlace place = locate_plane(capture.camera, capture.plane_points);
+        camera_from_plane = place.camera_from_board;
+        covariance = place.covariance;
+    }
     const int step = std::max(1, std::max(image.width, image.height) / kSide);
     for (int row = 0; row < image.height; row += step) {
         for (int column = 0; column < image.width; column += step) {
-            const Vector3d p = point_on_plane(capture.camera, capture.camera_from_plane, Eigen::Vector2d(column, row));
+            const Vector3d p = point_on_plane(capture.camera, camera_from_plane, Eigen::Vector2d(column, row));
             input.scan.points.push_back(p.cast<float>());
         }
     }
     input.scan.points_in_file = image.value.size();
     input.scan.format = "capture photo";
-    input.scan.sensor_mm = capture.camera_from_plane.inverse().translation();
-    input.photo = PhotoView{std::move(image), capture.camera, capture.camera_from_plane};
+    input.scan.sensor_mm = camera_from_plane.inverse().translation();
+    input.photo = PhotoView{std::move(image), capture.camera, camera_from_plane, covariance};
     return input;
 }
 
@@ -181,7 +188,7 @@ Extraction extract_photo(const PhotoView& photo, JointChoice joint) {
         found.remarks.push_back("no line crosses the photograph from side to side");
         return found;
     }
-    found.seams.push_back(seam_on_plane(*line, photo.camera, photo.camera_from_plane));
+    found.seams.push_back(seam_on_plane(*line, photo));
     found.remarks.push_back(
         "the seam was found in a photograph: the deviation is from the line's own edges in it, and "
         "tells nothing of heights, nor whether that line is the seam");

@@ -170,7 +170,7 @@ TEST(Photo, TheSeamIsInMillimetresOnThePlane) {
         truth.emplace_back(-80 + 40 * i, 3.0 * i, 0);
         line.points.push_back({pixel_of(camera, camera_from_plane * truth.back()), {0, 1}, 0.2, i == 2});
     }
-    const Seam seam = seam_on_plane(line, camera, camera_from_plane);
+    const Seam seam = seam_on_plane(line, {{}, camera, camera_from_plane});
     ASSERT_EQ(seam.points.size(), truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) {
         EXPECT_LT((seam.points[i].p - truth[i]).norm(), 1e-6);
@@ -179,7 +179,7 @@ TEST(Photo, TheSeamIsInMillimetresOnThePlane) {
         EXPECT_GT((camera_from_plane.inverse().translation() - truth[i]).dot(seam.points[i].n1), 0) << "to the camera";
     }
     camera_from_plane.linear() = Eigen::AngleAxisd(1.57, Vector3d::UnitX()).toRotationMatrix();
-    EXPECT_THROW(seam_on_plane(line, camera, camera_from_plane), InputError) << "seen edge-on";
+    EXPECT_THROW(seam_on_plane(line, {{}, camera, camera_from_plane}), InputError) << "seen edge-on";
 }
 
 std::map<std::string, Course> marked_seams() {
