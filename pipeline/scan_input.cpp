@@ -44,6 +44,19 @@ void check_not_black(const GreyImage& image, const fs::path& file) {
     }
 }
 
+StripeView stripe_view(const StripeCapture& capture, const std::vector<Profile>& profiles) {
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < profiles.size(); ++i) {
+        if (!profiles[i].points.empty()) {
+            shown.push_back(i);
+        }
+    }
+    const std::size_t index = shown[shown.size() / 2];
+    GreyImage image = picture_of(capture.images[index], capture.camera);
+    Stripe stripe = find_stripes(image, 1).at(0);
+    return {std::move(image), std::move(stripe), capture.camera, index};
+}
+
 ScanInput scan_of_stripes(const StripeCapture& capture, const fs::path& file) {
     ScanInput input;
     input.plane = capture.plane;
@@ -65,6 +78,7 @@ ScanInput scan_of_stripes(const StripeCapture& capture, const fs::path& file) {
     input.scan = std::move(stripes.scan);
     input.sigma_mm = std::move(stripes.sigma_mm);
     input.scan.format = "capture laser_stripe";
+    input.stripe = stripe_view(capture, input.profiles);
     return input;
 }
 
@@ -156,7 +170,9 @@ std::string comparison(const ScanInput& input, const Seam& seam, std::size_t num
 
 ScanInput read_scan(const fs::path& file, const ReadOptions& options) {
     if (!is_capture(file)) {
-        return {read(file, options), {}, {}, {}, {}, {}};
+        ScanInput input;
+        input.scan = read(file, options);
+        return input;
     }
     const Capture capture = read_capture(file);
     ScanInput input;
