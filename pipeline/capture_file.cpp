@@ -68,12 +68,37 @@ DepthCapture depth_capture(const Json& root, const fs::path& folder, std::vector
     return capture;
 }
 
+std::vector<BoardSight> plane_points_from(const JsonObject& object) {
+    const Json& list = object.member("plane_points");
+    if (!list.is_array() || list.size() < 4) {
+        object.complain("plane_points", "a list of 4 or more points with pixel_px and plane_mm was needed");
+        return {};
+    }
+    std::vector<BoardSight> points;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const JsonObject point(list[i], "/plane_points/" + std::to_string(i), object.problems(),
+                               {"pixel_px", "plane_mm"});
+        const auto pixel = point.numbers("pixel_px", 2), on_plane = point.numbers("plane_mm", 2);
+        if (!pixel.empty() && !on_plane.empty()) {
+            points.push_back({{on_plane[0], on_plane[1]}, {pixel[0], pixel[1]}});
+        }
+    }
+    return points;
+}
+
 PhotoCapture photo_capture(const Json& root, const fs::path& folder, std::vector<std::string>& problems) {
-    const JsonObject object(root, "", problems, {"kind", "camera", "image", "camera_from_plane"});
+    const JsonObject object(root, "", problems, {"kind", "camera", "image", "camera_from_plane", "plane_points"});
     PhotoCapture capture;
     capture.camera = camera_from(object.member("camera"), "/camera", problems);
     capture.image = image_from(object, folder);
-    capture.camera_from_plane = pose_from(object, "camera_from_plane");
+    if (!object.has("plane_points")) {
+        capture.camera_from_plane = pose_from(object, "camera_from_plane");
+        return capture;
+    }
+    if (object.has("camera_from_plane")) {
+        object.complain("plane_points", "stand beside camera_from_plane; one of the two was needed");
+    }
+    capture.plane_points = {capture.image.string(), plane_points_from(object)};
     return capture;
 }
 

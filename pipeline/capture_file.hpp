@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "stages/geometry/camera.hpp"
+#include "stages/optics/optics.hpp"
 #include "stages/stripe/stripe.hpp"
 
 /// Capture files: JSON with comments that names pictures, says what is known of the camera that took them, and where it
@@ -23,6 +24,10 @@
 ///
 ///     { "kind": "photo", "camera": ..., "image": "joint.jpg",                (PNG or JPEG)
 ///       "camera_from_plane": [x, y, z, qw, qx, qy, qz] }                     (the joint is on the plane's z = 0)
+///
+/// Instead of the pose a photograph may have four or more points of the plane, as they are read off the picture:
+///
+///       "plane_points": [ { "pixel_px": [x, y], "plane_mm": [x, y] }, ... ]  (pixels from the middle of the first)
 namespace seampath {
 
 /// A laser line in a sequence of pictures, all of one camera.
@@ -46,6 +51,7 @@ struct PhotoCapture {
     CameraModel camera;
     std::filesystem::path image;
     Eigen::Isometry3d camera_from_plane = Eigen::Isometry3d::Identity();
+    BoardView plane_points;  ///< instead of the pose, where there are any
 };
 
 using Capture = std::variant<StripeCapture, DepthCapture, PhotoCapture>;

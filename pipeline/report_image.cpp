@@ -1,5 +1,7 @@
 #include "pipeline/report_image.hpp"
 
+#include <cmath>
+
 #include "pipeline/report_text.hpp"
 #include "pipeline/scan_input.hpp"
 #include "stages/picture/picture.hpp"
@@ -24,6 +26,37 @@ GreyImage reduced_for_page(const GreyImage& image) {
         }
     }
     return small;
+}
+
+ReportImage image_of(const GreyImage& picture, std::string title) {
+    ReportImage image;
+    image.title = std::move(title);
+    image.jpeg = jpeg_bytes(reduced_for_page(picture));
+    image.width = picture.width;
+    image.height = picture.height;
+    return image;
+}
+
+/// The line's middle, gaps left open, and the seam's place in its profile.
+ReportImage stripe_image(const StripeView& view, const ScanInput& input, const std::vector<Seam>& seams) {
+    ReportImage image = image_of(view.image, "Laser stripe, picture " + std::to_string(view.index + 1) + " of " +
+                                                 std::to_string(input.profiles.size()));
+    image.legend = "Red: the middle of the line as it was measured; ring: where the seam crosses it.";
+    double last_column = -INFINITY;
+    for (const StripePoint& point : view.stripe.points) {
+        if (point.p.x() - last_column > 1.5) {
+            image.measured.emplace_back();
+        }
+        last_column = point.p.x();
+        image.measured.back().push_back(point.p);
+    }
+    if (!seams.empty()) {
+        const auto feature = find_seam_point(input.profiles[view.index], input.plane, seams[0].kind);
+        if (feature) {
+            image.features.push_back(pixel_of(view.camera, feature->p));
+        }
+    }
+    return image;
 }
 
 /// Adds the seam's points as polylines of one kind each; a bridged part begins and ends at measured points.
@@ -61,18 +94,28 @@ std::string polylines(const std::vector<std::vector<Eigen::Vector2d>>& lines, st
     return svg;
 }
 
+std::string rings(const std::vector<Eigen::Vector2d>& points, int width) {
+    std::string svg;
+    for (const Eigen::Vector2d& p : points) {
+        svg +=
+            "<circle fill=\"none\" vector-effect=\"non-scaling-stroke\" stroke=\"#ffd000\" stroke-width=\"2\" cx=\"" +
+            fixed(p.x() + 0.5, 1) + "\" cy=\"" + fixed(p.y() + 0.5, 1) + "\" r=\"" + fixed(0.012 * width, 1) + "\"/>";
+    }
+    return svg;
+}
+
 }  // namespace
 
 std::vector<ReportImage> report_images(const ScanInput& input, const std::vector<Seam>& seams) {
+    if (input.stripe) {
+        return {stripe_image(*input.stripe, input, seams)};
+    }
     if (!input.photo) {
         return {};
     }
     const PhotoView& view = *input.photo;
-    ReportImage image;
-    image.title = "Photograph";
-    image.jpeg = jpeg_bytes(reduced_for_page(view.image));
-    image.width = view.image.width;
-    image.height = view.image.height;
+    ReportImage image = image_of(view.image, "Photograph");
+    image.legend = "Red: the seam as it was measured; dashed: carried over from both sides.";
     for (const Seam& seam : seams) {
         add_seam(view, seam, image);
     }
@@ -83,15 +126,16 @@ std::string image_section(const std::vector<ReportImage>& images) {
     std::string html;
     for (const ReportImage& image : images) {
         const std::string width = std::to_string(image.width), height = std::to_string(image.height);
-        html += "<h2>" + escape_html(image.title) + "</h2><p class=\"soft\">" + width + " × " + height +
-                " pixels. Red: the seam as it was measured; dashed: carried over from both sides.</p><svg "
+        html += "<h2>" + escape_html(image.title) + "</h2><p class=\"soft\">" + width + " × " + height + " pixels. " +
+                escape_html(image.legend) +
+                "</p><svg "
                 "class=\"picture\" role=\"img\" aria-label=\"" +
                 escape_html(image.title) + " with the seam\" viewBox=\"0 0 " + width + ' ' + height +
                 "\" style=\"max-width:100%;max-height:90vh\"><image width=\"" + width + "\" height=\"" + height +
                 "\" preserveAspectRatio=\"none\" href=\"data:image/jpeg;base64," + base64(image.jpeg) + "\"/>" +
                 polylines(image.measured, "stroke=\"#ff2d2d\" stroke-width=\"1.5\"") +
                 polylines(image.modelled, "stroke=\"#ffd000\" stroke-width=\"1.5\" stroke-dasharray=\"5 4\"") +
-                "</svg>\n";
+                rings(image.features, image.width) + "</svg>\n";
     }
     return html;
 }

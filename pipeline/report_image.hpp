@@ -19,9 +19,12 @@ struct ReportImage {
     int height = 0;
     std::vector<std::vector<Eigen::Vector2d>> measured;  ///< polylines, px
     std::vector<std::vector<Eigen::Vector2d>> modelled;  ///< bridged parts
+    std::vector<Eigen::Vector2d> features;               ///< where seams cross the picture
+    std::string legend;                                  ///< what the lines are
 };
 
-/// A photograph with its seams. Of any other scan nothing.
+/// A photograph with its seams; of a laser line carried along a part, one picture with the line and where the first
+/// seam crosses it. Of any other scan nothing.
 std::vector<ReportImage> report_images(const ScanInput& input, const std::vector<Seam>& seams);
 
 /// The pictures with what was found drawn over them, as HTML; empty without pictures.

@@ -44,6 +44,19 @@ void check_not_black(const GreyImage& image, const fs::path& file) {
     }
 }
 
+StripeView stripe_view(const StripeCapture& capture, const std::vector<Profile>& profiles) {
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < profiles.size(); ++i) {
+        if (!profiles[i].points.empty()) {
+            shown.push_back(i);
+        }
+    }
+    const std::size_t index = shown[shown.size() / 2];
+    GreyImage image = picture_of(capture.images[index], capture.camera);
+    Stripe stripe = find_stripes(image, 1).at(0);
+    return {std::move(image), std::move(stripe), capture.camera, index};
+}
+
 ScanInput scan_of_stripes(const StripeCapture& capture, const fs::path& file) {
     ScanInput input;
     input.plane = capture.plane;
@@ -65,6 +78,7 @@ ScanInput scan_of_stripes(const StripeCapture& capture, const fs::path& file) {
     input.scan = std::move(stripes.scan);
     input.sigma_mm = std::move(stripes.sigma_mm);
     input.scan.format = "capture laser_stripe";
+    input.stripe = stripe_view(capture, input.profiles);
     return input;
 }
 
@@ -90,17 +104,24 @@ ScanInput scan_of_photo(const PhotoCapture& capture) {
     GreyImage image = picture_of(capture.image, capture.camera, decode_photograph);
     check_not_black(image, capture.image);
     ScanInput input;
+    Eigen::Isometry3d camera_from_plane = capture.camera_from_plane;
+    Matrix6 covariance = Matrix6::Zero();
+    if (!capture.plane_points.points.empty()) {
+        const BoardPlace place = locate_plane(capture.camera, capture.plane_points);
+        camera_from_plane = place.camera_from_board;
+        covariance = place.covariance;
+    }
     const int step = std::max(1, std::max(image.width, image.height) / kSide);
     for (int row = 0; row < image.height; row += step) {
         for (int column = 0; column < image.width; column += step) {
-            const Vector3d p = point_on_plane(capture.camera, capture.camera_from_plane, Eigen::Vector2d(column, row));
+            const Vector3d p = point_on_plane(capture.camera, camera_from_plane, Eigen::Vector2d(column, row));
             input.scan.points.push_back(p.cast<float>());
         }
     }
     input.scan.points_in_file = image.value.size();
     input.scan.format = "capture photo";
-    input.scan.sensor_mm = capture.camera_from_plane.inverse().translation();
-    input.photo = PhotoView{std::move(image), capture.camera, capture.camera_from_plane};
+    input.scan.sensor_mm = camera_from_plane.inverse().translation();
+    input.photo = PhotoView{std::move(image), capture.camera, camera_from_plane, covariance};
     return input;
 }
 
@@ -149,7 +170,9 @@ std::string comparison(const ScanInput& input, const Seam& seam, std::size_t num
 
 ScanInput read_scan(const fs::path& file, const ReadOptions& options) {
     if (!is_capture(file)) {
-        return {read(file, options), {}, {}, {}, {}, {}};
+        ScanInput input;
+        input.scan = read(file, options);
+        return input;
     }
     const Capture capture = read_capture(file);
     ScanInput input;
@@ -181,7 +204,7 @@ Extraction extract_photo(const PhotoView& photo, JointChoice joint) {
         found.remarks.push_back("no line crosses the photograph from side to side");
         return found;
     }
-    found.seams.push_back(seam_on_plane(*line, photo.camera, photo.camera_from_plane));
+    found.seams.push_back(seam_on_plane(*line, photo));
     found.remarks.push_back(
         "the seam was found in a photograph: the deviation is from the line's own edges in it, and "
         "tells nothing of heights, nor whether that line is the seam");

@@ -13,13 +13,22 @@
 /// What a run begins with: a point cloud, or pictures that a capture file names.
 namespace seampath {
 
+/// One of the pictures of a laser line, with the line that was found in it: the middle one of those that show it.
+struct StripeView {
+    GreyImage image;
+    Stripe stripe;
+    CameraModel camera;
+    std::size_t index = 0;  ///< of the picture
+};
+
 /// A scan and, when it came from a laser line, the profiles that it is made of.
 struct ScanInput {
     Scan scan;
     std::vector<Profile> profiles;  ///< one a picture, in the camera's frame; empty for other scans
     std::vector<Eigen::Isometry3d> base_from_camera;
     LaserPlane plane;
-    std::vector<float> sigma_mm;     ///< of each point where the sensor tells it; else empty
+    std::vector<float> sigma_mm;  ///< of each point where the sensor tells it; else empty
+    std::optional<StripeView> stripe;
     std::optional<PhotoView> photo;  ///< the scan then holds where some of its pixels lie on the plane, and no heights
 };
 

@@ -8,6 +8,7 @@
 #include "stages/angle.hpp"
 #include "stages/error.hpp"
 #include "stages/geometry/block_fit.hpp"
+#include "stages/text.hpp"
 
 namespace seampath::optics {
 namespace {
@@ -113,7 +114,7 @@ void check_points(const BoardView& view) {
 }
 
 BoardPlace refined_place(const CameraModel& camera, const BoardView& view, const Isometry3d& start,
-                         double circle_radius_mm) {
+                         double circle_radius_mm, double least_variance) {
     BlockProblem problem;
     problem.blocks = 1;
     problem.shared_unit = pose_unit();
@@ -123,7 +124,7 @@ BoardPlace refined_place(const CameraModel& camera, const BoardView& view, const
     const BlockFit fit = fit_blocks(problem, VectorXd::Zero(6), {VectorXd()});
     BoardPlace place;
     place.camera_from_board = displaced(start, fit.shared, start.translation());
-    place.covariance = fit.variance_factor() * fit.covariance();
+    place.covariance = std::max(least_variance, fit.variance_factor()) * fit.covariance();
     place.rms_px = std::sqrt(fit.chi2 / static_cast<double>(view.points.size()));
     return place;
 }
@@ -135,6 +136,37 @@ namespace seampath {
 BoardPlace locate_board(const CameraModel& camera, const BoardView& view, double circle_radius_mm) {
     optics::check_points(view);
     return optics::refined_place(camera, view, optics::first_place(camera, view), circle_radius_mm);
+}
+
+BoardPlace locate_plane(const CameraModel& camera, const BoardView& points) {
+    constexpr std::size_t kLeast = 4;
+    constexpr double kThinnest = 0.02;  // breadth of the points over their length
+    constexpr double kReading = 1;      // px, 1-sigma
+    constexpr double kMostOff = 0.01;   // of the picture's width
+    const std::string who = "photo: " + points.name + ": ";
+    if (points.points.size() < kLeast) {
+        throw InputError(who + std::to_string(points.points.size()) +
+                         " points of the plane are too few; 4 or more were needed");
+    }
+    Eigen::Vector2d middle(0, 0);
+    for (const BoardSight& point : points.points) {
+        middle += point.on_board / static_cast<double>(points.points.size());
+    }
+    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+    for (const BoardSight& point : points.points) {
+        spread += (point.on_board - middle) * (point.on_board - middle).transpose();
+    }
+    const Eigen::Vector2d variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues();
+    if (!(variances[0] > kThinnest * kThinnest * variances[1])) {
+        throw InputError(who + "the points of the plane lie on one line; take them from the corners of an area");
+    }
+    const BoardPlace place =
+        optics::refined_place(camera, points, optics::first_place(camera, points), 0, kReading * kReading);
+    if (!(place.rms_px <= kMostOff * camera.width)) {
+        throw InputError(who + "the points of the plane are " + fixed(place.rms_px, 1) +
+                         " px from where one plane would show them; check their order, their pixels and millimetres");
+    }
+    return place;
 }
 
 }  // namespace seampath

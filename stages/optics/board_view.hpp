@@ -21,9 +21,10 @@ Eigen::VectorXd pose_unit();
 CameraModel first_camera(const std::vector<BoardView>& views, int width, int height);
 Eigen::Isometry3d first_place(const CameraModel& camera, const BoardView& view);
 
-/// The place of the board by least squares from a start.
+/// The place of the board by least squares from a start. `least_variance`: of a pixel, px^2, where the residuals say
+/// less.
 BoardPlace refined_place(const CameraModel& camera, const BoardView& view, const Eigen::Isometry3d& start,
-                         double circle_radius_mm);
+                         double circle_radius_mm, double least_variance = 0);
 
 /// Throws InputError for a view of fewer than 6 points.
 void check_points(const BoardView& view);

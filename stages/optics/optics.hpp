@@ -83,6 +83,11 @@ struct BoardPlace {
 /// Least squares of the distances in the picture. Throws InputError for fewer than 6 points.
 BoardPlace locate_board(const CameraModel& camera, const BoardView& view, double circle_radius_mm);
 
+/// A plane from four or more of its points that a person read off a picture. As so few residuals tell little, a reading
+/// is taken to be good to a pixel at best. Throws InputError where the points are fewer, lie on one line, or do not fit
+/// one plane to a hundredth of the picture.
+BoardPlace locate_plane(const CameraModel& camera, const BoardView& points);
+
 /// A point of a laser's line on a board.
 struct LitPoint {
     Eigen::Vector2d pixel;

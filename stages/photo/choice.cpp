@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "stages/geometry/robust.hpp"
+
 namespace seampath::detail {
 namespace {
 
@@ -40,6 +42,12 @@ Corridor corridor_between(const LinePath& a, const LinePath& b) {
     return corridor;
 }
 
+/// A line that lies in the middle part of a corridor is as wide as that part at most: a wider one is what was ground.
+double widest_in(const Corridor& corridor) {
+    std::vector<double> halves = corridor.half;
+    return 2 * Corridor::kShare * quantile(halves, 0.5);
+}
+
 /// Whether two paths are the same line for most of their way.
 bool same_line(const LinePath& a, const LinePath& b) {
     int near = 0;
@@ -55,16 +63,17 @@ bool same_line(const LinePath& a, const LinePath& b) {
 ChosenLine choose_line(const LineEvidence& evidence) {
     std::vector<ChosenLine> lines;
     const LinePath free = best_path(evidence, kSeamKinds, {});
-    lines.push_back({free, free.worth, 0, false});
+    lines.push_back({free, free.worth, 0, false, kLineWidths.back()});
     const LinePath second = best_path(evidence, kSeamKinds, {&free, 1});
-    lines.push_back({second, second.worth, 0, false});
+    lines.push_back({second, second.worth, 0, false, kLineWidths.back()});
     const std::vector<LinePath> borders = best_borders(evidence);
     for (const LinePath& a : borders) {
         for (const LinePath& b : borders) {
             const Corridor corridor = corridor_between(a, b);
             if (!corridor.middle.empty()) {
                 const LinePath path = best_path(evidence, kSeamKinds, {}, &corridor);
-                lines.push_back({path, path.worth + std::min({kMostVouched * path.worth, a.worth, b.worth}), 0, true});
+                const double worth = path.worth + std::min({kMostVouched * path.worth, a.worth, b.worth});
+                lines.push_back({path, worth, 0, true, widest_in(corridor)});
             }
         }
     }

@@ -10,6 +10,7 @@ struct ChosenLine {
     double worth = 0;        ///< of the path and of the borders that it lies between, per block
     double rival_worth = 0;  ///< of the best line elsewhere
     bool between_borders = false;
+    double widest = 0;  ///< that the line can be, rows of the reduced picture
 };
 
 /// A joint that was prepared shows many lines side by side: the plates' top edges, borders of what was ground. Its seam

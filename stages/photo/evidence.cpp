@@ -9,8 +9,6 @@ namespace seampath::detail {
 namespace {
 
 constexpr int kBlockColumns = 2 * LineEvidence::kStep;
-/// Of a line, rows: steps of sqrt(2) where rows allow it.
-constexpr std::array<int, 9> kLineWidths{1, 2, 3, 4, 6, 8, 12, 16, 24};
 constexpr int kFrame = 16;          // rows along the picture's frame, which is no border of anything
 constexpr float kRounding = 0.01F;  // of logarithms: about a grey value in a mean of 100
 
@@ -126,7 +124,7 @@ void drop_glints(const LineSign* dark, LineSign* bright, int rows) {
 
 }  // namespace
 
-LineEvidence::LineEvidence(const GreyImage& image, int reduction) : reduction_(reduction) {
+LineEvidence::LineEvidence(const GreyImage& image, int reduction, std::span<const int> widths) : reduction_(reduction) {
     const GreyImage small = reduced(image, reduction);
     blocks_ = std::max(0, small.width / kStep - 1);
     rows_ = small.height;
@@ -138,7 +136,7 @@ LineEvidence::LineEvidence(const GreyImage& image, int reduction) : reduction_(r
             const std::array<LineSign*, kLineKinds> signs{&sign_[index(LineKind::dark, block, s)],
                                                           &sign_[index(LineKind::bright, block, s)],
                                                           &sign_[index(LineKind::border, block, s)]};
-            for (const int width : kLineWidths) {
+            for (const int width : widths) {
                 look_for_width(sums, width, signs);
             }
             drop_glints(signs[0], signs[1], rows_);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "stages/geometry/grey_image.hpp"
@@ -26,12 +27,15 @@ struct LineSign {
     float width = 0;     ///< rows of the reduced picture
 };
 
+/// Widths of lines, rows: steps of about sqrt(2), where rows allow it.
+inline constexpr std::array<int, 9> kLineWidths{1, 2, 3, 4, 6, 8, 12, 16, 24};
+
 /// How much every place of a picture looks like a line that runs from left to right, at 45 degrees at most. The picture
 /// is reduced by a whole number, and its columns are taken together in blocks that overlap by half: along a seam they
-/// agree, along texture they do not.
+/// agree, along texture they do not. `widths`: of the lines, rows of the reduced picture.
 class LineEvidence {
 public:
-    LineEvidence(const GreyImage& image, int reduction);
+    LineEvidence(const GreyImage& image, int reduction, std::span<const int> widths = kLineWidths);
 
     int blocks() const { return blocks_; }
     int rows() const { return rows_; }

@@ -51,7 +51,7 @@ std::optional<PhotoLine> line_across(const GreyImage& image) {
     if (chosen.path.worth < kLeastWorth) {
         return std::nullopt;
     }
-    const auto track = detail::track_line(image, evidence, chosen.path, reduction);
+    const auto track = detail::track_line(image, evidence, chosen, reduction);
     PhotoLine line{detail::measure_line(image, track), 0, chosen.between_borders, chosen.worth, chosen.rival_worth};
     std::vector<double> widths;
     for (const detail::TrackPlace& place : track) {
@@ -75,15 +75,22 @@ std::optional<PhotoLine> find_photo_line(const GreyImage& image) {
     return line;
 }
 
-Seam seam_on_plane(const PhotoLine& line, const CameraModel& camera, const Eigen::Isometry3d& camera_from_plane) {
-    const Vector3d out(0, 0, is_seen_from_above(camera_from_plane) ? 1 : -1);
+Seam seam_on_plane(const PhotoLine& line, const PhotoView& view) {
+    const Eigen::Isometry3d& pose = view.camera_from_plane;
+    const Vector3d out(0, 0, is_seen_from_above(pose) ? 1 : -1);
     Seam seam;
     seam.kind = JointKind::butt;
     for (const PhotoPoint& point : line.points) {
-        const Vector3d p = point_on_plane(camera, camera_from_plane, point.p);
-        const double sigma =
-            (point_on_plane(camera, camera_from_plane, point.p + point.normal) - p).norm() * point.sigma_px;
-        seam.points.push_back({p, out, out, sigma, point.modelled});
+        const Vector3d p = point_on_plane(view.camera, pose, point.p);
+        const Vector3d across = point_on_plane(view.camera, pose, point.p + point.normal) - p;
+        Vector6 slope;  // of p across the seam, over the pose's six numbers
+        for (int i = 0; i < 6; ++i) {
+            const double unit = i < 3 ? 1e-2 : 1e-5;  // mm, rad
+            const auto moved = displaced(pose, unit * Vector6::Unit(i), pose.translation());
+            slope[i] = (point_on_plane(view.camera, moved, point.p) - p).dot(across.normalized()) / unit;
+        }
+        const double of_plane = std::sqrt(std::max(0.0, slope.dot(view.covariance * slope)));
+        seam.points.push_back({p, out, out, std::hypot(across.norm() * point.sigma_px, of_plane), point.modelled});
     }
     const double whole = line.clarity + line.rival_clarity;
     seam.confidence = whole > 0 ? line.clarity / whole : 0;

@@ -6,8 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "stages/geometry/camera.hpp"
-#include "stages/geometry/grey_image.hpp"
+#include "stages/geometry/photo_view.hpp"
 #include "stages/types.hpp"
 
 /// A seam between two flat sheets in a photograph.
@@ -37,16 +36,17 @@ struct PhotoLine {
 /// Texture shows many short lines; a seam is what agrees over the whole picture. So lines of many widths and slopes are
 /// measured in blocks, against what texture gives around them, and the path that is worth most is found by dynamic
 /// programming over places and slopes: it goes straight over tacks, holes and highlights. Of several lines side by side
-/// the one midway between two borders is the seam. About the path the ridge is measured to a fraction of a pixel
-/// (stages/geometry/steger.hpp) on the grey values themselves, and its points are taken together, robustly, over as far
-/// as the measurement reaches anyway.
+/// the one midway between two borders is the seam. The strip about it is laid out straight and searched again for lines
+/// about as wide, in it the ridge is measured to a fraction of a pixel (stages/geometry/steger.hpp), and a line as
+/// smooth as the measurement lets it be is laid through, robustly: flakes and holes are modelled. It ends at the
+/// picture's borders, or where what is not measured is longer than the line is smooth over.
 ///
 /// Fails: a scratch along the whole picture is a line like any other, and a joint whose sheets overlap shows one border
 /// and no line.
 std::optional<PhotoLine> find_photo_line(const GreyImage& image);
 
-/// The seam in the plane's frame, mm: a butt joint whose flanks both face the camera. Throws InputError as
-/// point_on_plane() does.
-Seam seam_on_plane(const PhotoLine& line, const CameraModel& camera, const Eigen::Isometry3d& camera_from_plane);
+/// The seam in the plane's frame, mm: a butt joint whose flanks both face the camera. Its 1-sigma holds that of the
+/// plane, across the seam. Throws InputError as point_on_plane() does.
+Seam seam_on_plane(const PhotoLine& line, const PhotoView& view);
 
 }  // namespace seampath

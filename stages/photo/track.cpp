@@ -2,142 +2,104 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <set>
 
 #include "stages/geometry/robust.hpp"
 
 namespace seampath::detail {
 namespace {
 
-/// Median width of a path's line about a block, rows of the reduced picture.
-double width_about(const LinePath& path, std::size_t block) {
-    constexpr std::size_t kReach = 4;
+/// Median width of a line, rows, where it stands out and is no wider than it can be.
+double usual_width(const LinePath& path, double widest) {
     std::vector<double> widths;
-    const std::size_t end = std::min(path.places.size(), block + kReach + 1);
-    for (std::size_t i = block > kReach ? block - kReach : 0; i < end; ++i) {
-        if (path.places[i].kind == path.places[block].kind && path.places[i].sign.strength > 0) {
-            widths.push_back(static_cast<double>(path.places[i].sign.width));
+    for (const PathPlace& place : path.places) {
+        if (place.sign.strength > 1 && static_cast<double>(place.sign.width) <= widest) {
+            widths.push_back(static_cast<double>(place.sign.width));
         }
     }
     return widths.empty() ? 1 : quantile(widths, 0.5);
 }
 
-/// The path at each of the track's columns.
-std::vector<TrackPlace> along_path(const GreyImage& image, const LineEvidence& evidence, const LinePath& path,
-                                   double px_per_row) {
-    const std::size_t last = path.places.size() - 1;
-    const double first_column = evidence.column_of(0), block_px = LineEvidence::kStep * px_per_row;
-    std::vector<TrackPlace> places;
-    for (int column = 0; column < image.width; column += kTrackStep) {
-        const double at = (column - first_column) / block_px;
-        const auto i =
-            static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, std::max(0.0, static_cast<double>(last) - 1)));
-        const std::size_t j = std::min(i + 1, last);
-        const std::size_t nearest = at - static_cast<double>(i) < 0.5 ? i : j;
-        const PathPlace &a = path.places[i], &b = path.places[j];
-        TrackPlace place;
-        place.slope = j > i ? static_cast<double>(b.row - a.row) / LineEvidence::kStep : 0;
-        place.y = evidence.row_of(a.row + place.slope * LineEvidence::kStep * (at - static_cast<double>(i)));
-        place.kind = path.places[nearest].kind;
-        place.width = px_per_row * width_about(path, nearest);
-        place.seen = path.places[nearest].sign.strength > 1;
-        places.push_back(place);
+/// Half to double of a width, and no less than a pixel. A seam is as wide all along, give or take; what is far wider
+/// beside it was ground or lies in its shade.
+std::vector<int> widths_about(double width) {
+    std::set<int> widths;
+    for (int i = -2; i <= 2; ++i) {
+        widths.insert(std::max(1, static_cast<int>(std::lround(width * std::pow(2, 0.5 * i)))));
     }
-    return places;
+    return {widths.begin(), widths.end()};
 }
 
-/// How far rows about the path stand out as lines, one a row from -reach to reach, for one place.
-class TrackStrip {
+/// A path as a polyline over the columns of the picture.
+class PathLine {
 public:
-    TrackStrip(const GreyImage& image, int reach) : image_(image), reach_(reach) {}
+    PathLine(const LineEvidence& evidence, const LinePath& path) : path_(path) {
+        for (int i = 0; i < evidence.blocks(); ++i) {
+            x_.push_back(evidence.column_of(i));
+            y_.push_back(evidence.row_of(path.places[static_cast<std::size_t>(i)].row));
+        }
+    }
 
-    /// Heights of lines of the place's width and kind, in logarithms of grey values, means over some columns.
-    std::vector<double> heights(const TrackPlace& place, int column) const {
-        constexpr int kHalfMean = 3;  // columns: jags of a torn edge are as long
-        const int width = std::max(1, static_cast<int>(std::lround(place.width))), apart = std::max(1, width / 4);
-        const int side = std::max(2, width / 2), edge = reach_ + width / 2 + apart + side + 1;
-        std::vector<double> sums{0};
-        for (int u = -edge; u <= edge + 1; ++u) {
-            double sum = 0;
-            for (int i = -kHalfMean; i <= kHalfMean; ++i) {
-                const double row = place.y + place.slope * i + u;
-                sum += static_cast<double>(image_.clamped(column + i, static_cast<int>(std::lround(row))));
-            }
-            sums.push_back(sums.back() + std::log(static_cast<double>(kBlack) + sum / (2 * kHalfMean + 1)));
-        }
-        const auto mean = [&](int begin, int count) {
-            const auto first = sums.begin() + begin;
-            return (first[count] - *first) / count;
-        };
-        std::vector<double> heights;
-        for (int u = -reach_; u <= reach_; ++u) {
-            const int top = u + edge - width / 2;
-            const double own = mean(top, width), above = mean(top - apart - side, side);
-            const double below = mean(top + width + apart, side);
-            heights.push_back(place.kind == LineKind::bright ? own - std::max(above, below)
-                                                             : std::min(above, below) - own);
-        }
-        return heights;
+    /// The piece that holds a column; the outer ones go on beyond the path's ends.
+    std::size_t piece(double column) const {
+        const auto after = std::upper_bound(x_.begin(), x_.end(), column);
+        const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - x_.begin()));
+        return std::min(i, std::max<std::size_t>(1, x_.size() - 1)) - 1;
+    }
+    double slope(double column) const {
+        const std::size_t i = piece(column);
+        return x_.size() < 2 ? 0 : (y_[i + 1] - y_[i]) / (x_[i + 1] - x_[i]);
+    }
+    double y(double column) const { return y_[piece(column)] + slope(column) * (column - x_[piece(column)]); }
+    const PathPlace& nearest(double column) const {
+        const std::size_t i = piece(column);
+        return path_.places[x_.size() > 1 && column - x_[i] > x_[i + 1] - column ? i + 1 : i];
     }
 
 private:
-    const GreyImage& image_;
-    int reach_;
+    const LinePath& path_;
+    std::vector<double> x_, y_;
 };
 
-/// Offsets, one a place, whose heights together are most; from place to place by one row at most, which costs.
-std::vector<int> best_offsets(const std::vector<std::vector<double>>& heights, int reach) {
-    constexpr double kMove = 1;  // of the usual height of what stands out
-    constexpr double kMost = 3;  // times that height: more counts no more
-    std::vector<double> all;
-    for (const auto& column : heights) {
-        all.push_back(*std::max_element(column.begin(), column.end()));
-    }
-    const double unit = std::max(1e-6, quantile(all, 0.5));
-    const auto rows = 2 * static_cast<std::size_t>(reach) + 1;
-    std::vector<double> worth(rows, 0);
-    std::vector<std::int8_t> from(heights.size() * rows, 0);
-    for (std::size_t k = 0; k < heights.size(); ++k) {
-        std::vector<double> next(rows);
-        for (std::size_t r = 0; r < rows; ++r) {
-            int best = 0;
-            for (const int move : {-1, 1}) {
-                const std::size_t old = r + static_cast<std::size_t>(move);
-                if (old < rows && worth[old] - kMove > worth[r + static_cast<std::size_t>(best)] - (best ? kMove : 0)) {
-                    best = move;
-                }
-            }
-            from[k * rows + r] = static_cast<std::int8_t>(best);
-            next[r] = worth[r + static_cast<std::size_t>(best)] - (best ? kMove : 0) +
-                      std::clamp(heights[k][r] / unit, 0.0, kMost);
+/// The rows about a line, `half` to either side of it, each column moved so that the line is the middle row.
+GreyImage strip_about(const GreyImage& image, const PathLine& line, int half) {
+    GreyImage strip{image.width, 2 * half + 1, image.white, {}};
+    strip.value.resize(static_cast<std::size_t>(strip.width) * static_cast<std::size_t>(strip.height));
+    for (int c = 0; c < strip.width; ++c) {
+        const double top = line.y(c) - half, whole = std::floor(top);
+        const auto part = static_cast<float>(top - whole);
+        for (int r = 0; r < strip.height; ++r) {
+            const int row = static_cast<int>(whole) + r;
+            strip.value[static_cast<std::size_t>(r) * static_cast<std::size_t>(strip.width) +
+                        static_cast<std::size_t>(c)] =
+                (1 - part) * image.clamped(c, row) + part * image.clamped(c, row + 1);
         }
-        worth = std::move(next);
     }
-    std::vector<int> offsets(heights.size());
-    auto r = static_cast<std::size_t>(std::max_element(worth.begin(), worth.end()) - worth.begin());
-    for (std::size_t k = heights.size(); k-- > 0;) {
-        offsets[k] = static_cast<int>(r) - reach;
-        r += static_cast<std::size_t>(from[k * rows + r]);
-    }
-    return offsets;
+    return strip;
 }
 
 }  // namespace
 
-std::vector<TrackPlace> track_line(const GreyImage& image, const LineEvidence& evidence, const LinePath& path,
+std::vector<TrackPlace> track_line(const GreyImage& image, const LineEvidence& evidence, const ChosenLine& line,
                                    double px_per_row) {
-    constexpr double kRowsOff = 4;  // that a path may be off a ragged line
-    const int reach = static_cast<int>(std::lround(kRowsOff * px_per_row));
-    std::vector<TrackPlace> places = along_path(image, evidence, path, px_per_row);
-    const TrackStrip strip(image, reach);
-    std::vector<std::vector<double>> heights;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        heights.push_back(strip.heights(places[k], static_cast<int>(k) * kTrackStep));
-    }
-    const std::vector<int> offsets = best_offsets(heights, reach);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        places[k].y += offsets[k];
-        places[k].seen = places[k].seen && heights[k].begin()[offsets[k] + reach] > 0;
+    constexpr double kRowsOff = 4;  // that the chosen path may be off, and half of the line
+    constexpr int kTexture = 64;    // px on either side, that tell what stands out
+    constexpr std::array kSeamKinds{LineKind::dark, LineKind::bright};
+    const double width = usual_width(line.path, line.widest) * px_per_row;
+    const double reach = kRowsOff * px_per_row + 0.5 * width;
+    const PathLine rough(evidence, line.path);
+    const int half = static_cast<int>(std::ceil(reach + 4 * width)) + kTexture;
+    const std::vector<int> widths = widths_about(width);
+    const LineEvidence near(strip_about(image, rough, half), 1, widths);
+    const auto blocks = static_cast<std::size_t>(near.blocks());
+    const Corridor corridor{std::vector<double>(blocks, half), std::vector<double>(blocks, reach / Corridor::kShare)};
+    const LinePath path = best_path(near, kSeamKinds, {}, &corridor);
+    const PathLine fine(near, path);
+    std::vector<TrackPlace> places;
+    for (int column = 0; column < image.width; column += kTrackStep) {
+        const PathPlace& place = fine.nearest(column);
+        places.push_back({rough.y(column) + fine.y(column) - half, rough.slope(column) + fine.slope(column),
+                          static_cast<double>(place.sign.width), place.kind, place.sign.strength > 1});
     }
     return places;
 }

@@ -34,11 +34,12 @@ const PhotoPicture& joint() {
     return picture;
 }
 
-fs::path write_capture(const fs::path& folder, const GreyImage& image, const std::string& camera_from_plane) {
+// With a pose, or with points of the plane.
+fs::path write_capture(const fs::path& folder, const GreyImage& image, const std::string& plane,
+                       const std::string& key = "camera_from_plane") {
     std::ofstream(folder / "joint.jpg", std::ios::binary) << jpeg_bytes(image);
     std::ofstream(folder / "capture.json")
-        << "{\"kind\": \"photo\", " << kCamera
-        << ", \"image\": \"joint.jpg\", \"camera_from_plane\": " << camera_from_plane << "}";
+        << "{\"kind\": \"photo\", " << kCamera << ", \"image\": \"joint.jpg\", \"" << key << "\": " << plane << "}";
     return folder / "capture.json";
 }
 
@@ -70,7 +71,8 @@ TEST(PhotoRun, AJointIsWeldedWhereThePhotographShowsIt) {
     EXPECT_GT(part.deviations[0].coverage, 0.8);
     int welds = 0;
     for (const Waypoint& waypoint : part.plan.waypoints) {
-        if (waypoint.kind == WaypointKind::weld) {
+        if (waypoint.kind == WaypointKind::weld_start || waypoint.kind == WaypointKind::weld ||
+            waypoint.kind == WaypointKind::weld_end) {
             EXPECT_LT(off_joint_mm(waypoint.p), 0.5 * kMmPerPx);
             EXPECT_LT((waypoint.q * Vector3d::UnitZ()).z(), -0.99) << "the torch comes from the camera's side";
             ++welds;
@@ -115,6 +117,41 @@ TEST(PhotoRun, AModelBesideTheLineFails) {
     const Deviation nothing = validate(model_at(0), bare, options);
     EXPECT_FALSE(nothing.pass) << nothing.verdict;
     EXPECT_EQ(nothing.coverage, 0);
+}
+
+// Four points read off the picture stand for the pose; a pixel that is read wrong by d moves the plane by 0.25 d mm
+// there, so the seam is known to about that.
+TEST(PhotoRun, FourPointsOfThePlaneStandForThePose) {
+    const TestFolder folder;
+    const std::string points = R"([{"pixel_px": [40, 40], "plane_mm": [10, -10]},
+        {"pixel_px": [600, 40], "plane_mm": [150, -10]}, {"pixel_px": [600, 440], "plane_mm": [150, -110]},
+        {"pixel_px": [40, 440], "plane_mm": [10, -110]}])";
+    const auto seam_of = [&](const std::string& text) {
+        const ScanInput input = read_scan(write_capture(folder.path(), photograph(), text, "plane_points"), {});
+        return extract_photo(*input.photo, JointChoice::automatic).seams.at(0);
+    };
+    const ScanInput posed = read_scan(write_capture(folder.path(), photograph(), kFromAbove), {});
+    const Seam by_pose = extract_photo(*posed.photo, JointChoice::automatic).seams.at(0), by_points = seam_of(points);
+    ASSERT_EQ(by_points.points.size(), by_pose.points.size());
+    for (std::size_t i = 0; i < by_pose.points.size(); ++i) {
+        EXPECT_LT((by_points.points[i].p - by_pose.points[i].p).norm(), 1e-4);
+        EXPECT_GT(by_points.points[i].sigma_mm, by_pose.points[i].sigma_mm + 0.05) << "a reading is good to a pixel";
+        EXPECT_LT(by_points.points[i].sigma_mm, by_pose.points[i].sigma_mm + 0.4);
+    }
+    const auto error_of = [&](const std::string& from, const std::string& to) {
+        std::string text = points;
+        text.replace(text.find(from), from.size(), to);
+        try {
+            seam_of(text);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    EXPECT_THAT(error_of("[10, -110]", "[110, -10]"), HasSubstr("px from where one plane would show them"));
+    EXPECT_THAT(error_of(R"({"pixel_px": [40, 40], "plane_mm": [10, -10]},)", ""), HasSubstr("4 or more"));
+    EXPECT_THAT(error_of("\"plane_mm\": [10, -10]", "\"plane\": [10, -10]"), HasSubstr("/plane_points/0"));
+    EXPECT_THAT(error_of("[150, -110]}", "[150, -10.1]}"), HasSubstr("px from where"));
 }
 
 TEST(PhotoRun, BadInputGetsOneClearLine) {

@@ -10,6 +10,7 @@
 
 #include "datasets/photo_picture.hpp"
 #include "stages/error.hpp"
+#include "stages/photo/smooth.hpp"
 #include "stages/picture/picture.hpp"
 
 namespace seampath {
@@ -92,7 +93,12 @@ std::vector<Rendered> rendered_photos() {
     unlike.sheet_grey = {150, 90};
     bright.gap_px = 5;
     bright.gap_grey = 230;
-    return {{"dark", across, {}}, {"spots", down, spots}, {"unlike sheets", unlike, {}}, {"bright", bright, spots}};
+    PhotoPicture narrow = down;
+    narrow.gap_px = 3;
+    PhotoNoise soft;
+    soft.blur_px = 2;
+    return {{"dark", across, {}},      {"spots", down, spots},    {"unlike sheets", unlike, {}},
+            {"bright", bright, spots}, {"narrow", narrow, spots}, {"out of focus", across, soft}};
 }
 
 TEST(Photo, RenderedSeamsAreMeasuredToAThirdOfAPixel) {
@@ -103,10 +109,32 @@ TEST(Photo, RenderedSeamsAreMeasuredToAThirdOfAPixel) {
         ASSERT_TRUE(line);
         const Off off = off_truth(*line, photo.picture.course);
         EXPECT_LT(off.rms, 0.3);
-        EXPECT_LT(off.normalised, 3) << "grains longer than a stretch are part of it";
+        EXPECT_LT(off.normalised, 2.2);
+        EXPECT_GT(off.normalised, 0.4);
         RecordProperty(photo.name, std::to_string(off.rms));
         seed = seed == 11 ? 12 : 11;
     }
+}
+
+// Known answers: a straight line keeps straight over flaws to one side and over what is not measured, and beyond its
+// ends; waves much longer than the flaws are followed.
+TEST(Photo, SmoothLinesFollowWavesAndNoFlaws) {
+    detail::Heights straight, wave;
+    for (int i = 0; i < 160; ++i) {
+        const double jitter = 0.1 * std::sin(2.4 * i * i);
+        const bool flaw = i % 40 > 30, hidden = i < 4 || (i > 70 && i < 90);
+        straight.y.push_back(3 + 0.1 * i + jitter + (flaw ? 6 : 0));
+        straight.measured.push_back(!hidden);
+        wave.y.push_back(8 * std::sin(2 * M_PI * i / 80) + jitter);
+        wave.measured.push_back(true);
+    }
+    const detail::SmoothLine line = detail::smooth_line(straight, 12), bent = detail::smooth_line(wave, 12);
+    for (int i = 0; i < 160; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        EXPECT_NEAR(line.y[k], 3 + 0.1 * i, 0.4) << i;
+        EXPECT_NEAR(bent.y[k], 8 * std::sin(2 * M_PI * i / 80), 0.4) << i;
+    }
+    EXPECT_GT(line.length, 2 * bent.length);
 }
 
 // Tacks and holes hide the seam: what lies there is carried over and says so.
@@ -142,7 +170,7 @@ TEST(Photo, TheSeamIsInMillimetresOnThePlane) {
         truth.emplace_back(-80 + 40 * i, 3.0 * i, 0);
         line.points.push_back({pixel_of(camera, camera_from_plane * truth.back()), {0, 1}, 0.2, i == 2});
     }
-    const Seam seam = seam_on_plane(line, camera, camera_from_plane);
+    const Seam seam = seam_on_plane(line, {{}, camera, camera_from_plane});
     ASSERT_EQ(seam.points.size(), truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) {
         EXPECT_LT((seam.points[i].p - truth[i]).norm(), 1e-6);
@@ -151,7 +179,7 @@ TEST(Photo, TheSeamIsInMillimetresOnThePlane) {
         EXPECT_GT((camera_from_plane.inverse().translation() - truth[i]).dot(seam.points[i].n1), 0) << "to the camera";
     }
     camera_from_plane.linear() = Eigen::AngleAxisd(1.57, Vector3d::UnitX()).toRotationMatrix();
-    EXPECT_THROW(seam_on_plane(line, camera, camera_from_plane), InputError) << "seen edge-on";
+    EXPECT_THROW(seam_on_plane(line, {{}, camera, camera_from_plane}), InputError) << "seen edge-on";
 }
 
 std::map<std::string, Course> marked_seams() {
@@ -197,10 +225,10 @@ TEST(Photo, RealSeamsAreFollowedWhereAPersonSeesThem) {
     if (!fs::exists(folder)) {
         GTEST_SKIP() << "the real photographs are not on this machine: " << folder;
     }
-    // Least share within 4 px, which 0.95 of everywhere is the aim of. Torn edges (x2, x7), a bright rim beside a dark
-    // crack (x5) and a line that is hardly seen in the strip about it (specular) are followed less closely.
-    const std::map<std::string, double> least{{"specular", 0.62}, {"x2", 0.63}, {"x3", 0.83}, {"x4", 0.95},
-                                              {"x5", 0.6},        {"x6", 0.87}, {"x7", 0.86}, {"y1", 0.95}};
+    // Least share within 4 px. Where flakes as long as ten widths broke out of an edge (x2, x5), the line follows them
+    // some pixels.
+    const std::map<std::string, double> least{{"specular", 0.95}, {"x2", 0.85}, {"x3", 0.95}, {"x4", 0.95},
+                                              {"x5", 0.89},       {"x6", 0.95}, {"x7", 0.95}, {"y1", 0.95}};
     const auto seams = marked_seams();
     ASSERT_EQ(seams.size(), least.size());
     for (const auto& [name, marked] : seams) {
@@ -208,7 +236,7 @@ TEST(Photo, RealSeamsAreFollowedWhereAPersonSeesThem) {
         ASSERT_TRUE(line) << name;
         const double near = share_within(marked, *line, 4);
         EXPECT_GE(near, least.at(name)) << name;
-        EXPECT_GE(share_within(marked, *line, 20), 0.93) << name << ": the seam and no other line";
+        EXPECT_GE(share_within(marked, *line, 12), 0.99) << name << ": the seam and no other line";
         RecordProperty(name, std::to_string(near));
     }
 }

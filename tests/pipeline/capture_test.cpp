@@ -81,6 +81,8 @@ TEST(Capture, RunMeasuresTheSeamTwoWaysThatAgree) {
     EXPECT_EQ(run.status, 0) << run.err;
     const std::string report = text_of(out.path() / "run" / "report.json");
     EXPECT_THAT(report, AllOf(HasSubstr("measured profile by profile"), Not(HasSubstr("do not agree"))));
+    EXPECT_THAT(text_of(out.path() / "run" / "report.html"),
+                AllOf(HasSubstr("Laser stripe, picture 21 of 40"), HasSubstr("<circle fill=\"none\"")));
     const Outcome info = seampath_program({"info", small_capture()});
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_THAT(info.out, HasSubstr("capture laser_stripe"));
