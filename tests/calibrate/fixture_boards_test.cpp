@@ -35,6 +35,7 @@ protected:
                    {"method", "boards"},
                    {"camera", camera_json(camera)},
                    {"limit_mm", 5},
+                   {"trials", 1000},
                    {"boards",
                     {{{"name", "A"},
                       {"part_from_board", pose_numbers(part_from_board)},

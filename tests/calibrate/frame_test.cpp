@@ -106,7 +106,7 @@ TEST(CalibrateFrame, APoseGivesItsFrameAndItsCovariance) {
     C.diagonal() << 1e-4, 2e-4, 9e-4, 4e-8, 5e-8, 1e-8;
     C(0, 4) = C(4, 0) = 1e-6;
     const Isometry3d T = some_pose();
-    const FrameResult r = calibrate_frame({board("A", nominal, T, C)}, kWork, {});
+    const FrameResult r = calibrate_frame({board("A", nominal, T, C)}, {}, {});
     EXPECT_LT(displacement(T, r.base_from_part).norm(), 1e-9);
     EXPECT_TRUE(r.pass()) << r.faults[0];
     const Matrix6 J = change_of_reference((T * nominal).translation(), T.translation());
@@ -125,7 +125,7 @@ TEST(CalibrateFrame, TheBoardThatMovedIsNamed) {
             board("B" + std::to_string(i), Isometry3d(Eigen::Translation3d(200 * i, 30 * i * i, 0)), some_pose(), C));
     }
     boards[2].poses[0].measured.translation() += Vector3d(0, 0.3, 0);
-    const FrameResult r = calibrate_frame(boards, kWork, {});
+    const FrameResult r = calibrate_frame(boards, {}, {});
     EXPECT_FALSE(r.pass());
     EXPECT_THAT(r.moved, ElementsAre("B2"));
 }
