@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "datasets/board_pictures.hpp"
 #include "datasets/fixture_draws.hpp"
 
 namespace seampath {
@@ -10,7 +11,15 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-enum FixtureStream : std::uint64_t { kFixturePose = 900, kFixtureBalls, kFixtureClutter, kFixtureMoved };
+enum FixtureStream : std::uint64_t {
+    kFixturePose = 900,
+    kFixtureBalls,
+    kFixtureClutter,
+    kFixtureMoved,
+    kFixtureTouch,
+    kFixtureSeams,
+    kFixtureBoard
+};
 
 /// A scan in the making, seen along `sight` (unit, away from the sensor).
 class Exposure {
@@ -115,6 +124,75 @@ FixtureScan make_ball_scan(const BallScene& scene, std::uint64_t seed) {
     }
     add_ball_clutter(exposure, scene, sight, clutter);
     made.scan = std::move(exposure).scan();
+    return made;
+}
+
+TouchedPart make_touched_part(std::uint64_t seed, double sigma_mm) {
+    Draws placing(seed, kFixturePose), draws(seed, kFixtureTouch);
+    TouchedPart part;
+    part.base_from_part = placing.pose(800);
+    const auto touched = [&](const Vector3d& q) {
+        const double x = draws.normal(), y = draws.normal(), z = draws.normal();
+        return Vector3d(part.base_from_part * q + sigma_mm * Vector3d(x, y, z));
+    };
+    for (const Vector3d& q : {Vector3d(0, 0, 0), Vector3d(400, 0, 30), Vector3d(30, 290, 5), Vector3d(370, 240, 130)}) {
+        part.points.push_back({q, touched(q), sigma_mm * sigma_mm * Eigen::Matrix3d::Identity()});
+    }
+    const auto plane = [&](const char* name, const Vector3d& normal, const std::vector<Vector3d>& places) {
+        part.planes.push_back({name, normal, 0, {}});
+        for (const Vector3d& q : places) {
+            part.planes.back().touched.push_back({q, touched(q), sigma_mm});
+        }
+    };
+    plane("A", {0, 0, 1}, {{20, 20, 0}, {380, 30, 0}, {150, 260, 0}, {350, 240, 0}});
+    plane("B", {0, 1, 0}, {{30, 0, 20}, {370, 0, 50}});
+    plane("C", {1, 0, 0}, {{0, 120, 30}});
+    return part;
+}
+
+SeenBoard make_seen_board(std::uint64_t seed, double sigma_px) {
+    Draws placing(seed, kFixturePose), draws(seed, kFixtureBoard);
+    const Board board{BoardKind::chessboard, 11, 8, 15, 0, 0};
+    SeenBoard made;
+    made.camera = {1280, 960, {1500, 1497}, {642.5, 476}, {-0.12, 0.08, 0.0004, -0.0003, 0}};
+    made.part_from_board = placing.pose(200);
+    const Isometry3d place = board_places(board, made.camera, 1, 40, seed).front();
+    made.camera_from_part = place * made.part_from_board.inverse();
+    for (const Eigen::Vector2d& p : points_of(board)) {
+        const double x = draws.normal(), y = draws.normal();
+        made.points.push_back(
+            {p, pixel_of(made.camera, place * Vector3d(p.x(), p.y(), 0)) + sigma_px * Eigen::Vector2d(x, y)});
+    }
+    return made;
+}
+
+SeamScene::SeamScene()
+    : seams{{"A", false, {{0, 0, 0}, {180, 0, 0}}}, {"B", false, {{0, 40, 0}, {0, 120, 60}}}, {"C", false, {}}} {
+    for (int i = 0; i <= 400; ++i) {
+        const double a = 0.3 + 3.6 * i / 400;
+        seams[2].points.emplace_back(120 + 45 * portable::cos(a), 90 + 45 * portable::sin(a), 20);
+    }
+}
+
+MeasuredSeams make_measured_seams(const SeamScene& scene, std::uint64_t seed) {
+    Draws placing(seed, kFixturePose), draws(seed, kFixtureSeams);
+    MeasuredSeams made;
+    made.base_from_part = placing.pose(800);
+    for (const NominalSeam& seam : scene.seams) {
+        std::vector<MeasuredSeamPoint> points;
+        for (std::size_t i = 0; i + 1 < seam.points.size(); ++i) {
+            const Vector3d a = seam.points[i], d = seam.points[i + 1] - a;
+            const Vector3d e0 = d.normalized().unitOrthogonal(), e1 = d.normalized().cross(e0);
+            const int steps = std::max(1, static_cast<int>(d.norm()));
+            for (int k = 0; k < steps; ++k) {
+                const double across = draws.normal(), up = draws.normal();
+                const Vector3d p = a + d * k / steps + scene.sigma_mm * (across * e0 + up * e1);
+                points.push_back({made.base_from_part * p, scene.sigma_mm});
+            }
+        }
+        const auto cut = static_cast<std::ptrdiff_t>(points.size() / 20);
+        made.seams.emplace_back(points.begin() + cut, points.end() - cut);
+    }
     return made;
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "stages/calibrate/calibrate.hpp"
+#include "stages/optics/optics.hpp"
 #include "stages/types.hpp"
 
 /// Fixtures with known truth, as a sensor sees them: `base` is the sensor's frame, in which a scan's points are; the
@@ -35,5 +36,38 @@ struct FixtureScan {
 };
 
 FixtureScan make_ball_scan(const BallScene& scene, std::uint64_t seed);
+
+/// Four points and three datum planes of a part, touched with noise in all directions.
+struct TouchedPart {
+    Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
+    std::vector<FramePoint> points;
+    std::vector<DatumPlane> planes;
+};
+
+TouchedPart make_touched_part(std::uint64_t seed, double sigma_mm = 0.01);
+
+/// Corners of a board on a part, as a camera sees them.
+struct SeenBoard {
+    CameraModel camera;
+    Eigen::Isometry3d part_from_board = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d camera_from_part = Eigen::Isometry3d::Identity();
+    std::vector<BoardSight> points;
+};
+
+SeenBoard make_seen_board(std::uint64_t seed, double sigma_px = 0.1);
+
+/// Seams, and points a millimetre apart on the middle nine tenths of each, with noise across it.
+struct SeamScene {
+    SeamScene();
+    std::vector<NominalSeam> seams;  ///< two straight ones and an arc
+    double sigma_mm = 0.02;          ///< along either direction across
+};
+
+struct MeasuredSeams {
+    Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
+    std::vector<std::vector<MeasuredSeamPoint>> seams;
+};
+
+MeasuredSeams make_measured_seams(const SeamScene& scene, std::uint64_t seed);
 
 }  // namespace seampath

@@ -247,12 +247,29 @@ SurfaceScan make_surface_scan(const SurfaceScene& scene, std::uint64_t seed) {
             const Vector3d p = lens.world_from_camera.translation() +
                                (view.depth[i] + scene.sigma_mm * noise.normal(i)) * view.ray(lens, i);
             scan.points.push_back((T * p - scan.origin_mm).cast<float>());
+            result.of_part.push_back(static_cast<std::size_t>(view.face[i]) < part_faces);
         }
     }
     scan.points_in_file = scan.points.size();
     result.on_part = share_of(view, part_faces);
     result.part_seen = seen_area(world, part_faces, lens, view);
     return result;
+}
+
+Scan golden_scan(const SurfaceScan& seen) {
+    const Isometry3d back = seen.made.base_from_part.inverse();
+    Scan golden = seen.made.scan;
+    golden.name = "golden";
+    golden.origin_mm.setZero();
+    golden.sensor_mm = back * *seen.made.scan.sensor_mm;
+    golden.points.clear();
+    for (std::size_t i = 0; i < seen.of_part.size(); ++i) {
+        if (seen.of_part[i]) {
+            golden.points.push_back((back * seen.made.scan.position(i)).cast<float>());
+        }
+    }
+    golden.points_in_file = golden.points.size();
+    return golden;
 }
 
 }  // namespace seampath

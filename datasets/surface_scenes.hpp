@@ -27,11 +27,15 @@ struct SurfaceScene {
 };
 
 struct SurfaceScan {
-    FixtureScan made;      ///< base frame: any turn, any place
-    double on_part = 0;    ///< share of the points
-    double part_seen = 0;  ///< share of the part's surface that they show, by area
+    FixtureScan made;                   ///< base frame: any turn, any place
+    std::vector<std::uint8_t> of_part;  ///< of each point: 1 for the part's, 0 for what is around
+    double on_part = 0;                 ///< share of the points
+    double part_seen = 0;               ///< share of the part's surface that they show, by area
 };
 
 SurfaceScan make_surface_scan(const SurfaceScene& scene, std::uint64_t seed);
+
+/// A golden scan: the points of the part alone, in its frame, with the place of the sensor.
+Scan golden_scan(const SurfaceScan& seen);
 
 }  // namespace seampath

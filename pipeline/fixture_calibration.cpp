@@ -110,27 +110,49 @@ void from_planes(const std::vector<TouchedRow>& rows, FixtureCalibration& c) {
     c.frame = calibrate_planes(planes, c.nominal.work_points, c.nominal.frame);
 }
 
-// What a frame is worth along each seam: at its ends and in its middle.
+// The place at a share of a seam's length.
+Vector3d place_along(const NominalSeam& seam, double share) {
+    std::vector<Vector3d> points = seam.points;
+    if (seam.closed) {
+        points.push_back(points.front());
+    }
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        length += (points[i + 1] - points[i]).norm();
+    }
+    double due = share * length;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Vector3d d = points[i + 1] - points[i];
+        if (due < d.norm()) {
+            return points[i] + due * d.normalized();
+        }
+        due -= d.norm();
+    }
+    return points.back();
+}
+
+// What a frame is worth along each seam: at its quarters. Between places of a line it is no larger than at its ends.
 std::vector<WorkPoint> with_seams(std::vector<WorkPoint> work_points, const std::vector<NominalSeam>& seams) {
+    constexpr std::array<std::pair<const char*, double>, 5> kPlaces{
+        {{"begin", 0}, {"first quarter", 0.25}, {"middle", 0.5}, {"third quarter", 0.75}, {"end", 1}}};
     for (const NominalSeam& seam : seams) {
-        if (!seam.points.empty()) {
-            work_points.push_back({seam.name + ": begin", seam.points.front()});
-            work_points.push_back({seam.name + ": middle", seam.points[seam.points.size() / 2]});
-            work_points.push_back({seam.name + ": end", seam.points.back()});
+        for (const auto& [name, share] : kPlaces) {
+            if (!seam.points.empty() && !(seam.closed && share == 1)) {
+                work_points.push_back({seam.name + ": " + name, place_along(seam, share)});
+            }
         }
     }
     return work_points;
 }
 
 void from_seams(const std::vector<std::vector<MeasuredSeamPoint>>& measured, FixtureCalibration& c) {
-    c.nominal.work_points = with_seams(std::move(c.nominal.work_points), c.nominal.seams);
     c.frame = calibrate_seams(c.nominal.seams, measured, c.nominal.work_points, c.nominal.frame);
     c.numbers.push_back({"measured seams", static_cast<double>(measured.size()), ""});
 }
 
 BestFitOptions search_options(const NominalFixture& nominal) {
     const NominalSurfaceFile& surface = nominal.surface;
-    return {nominal.frame, surface.least_share, surface.scan_sensor_mm, surface.surface_sensor_mm};
+    return {nominal.frame, surface.least_share, surface.scan_sensor_mm, surface.surface_sensor_mm, surface.near};
 }
 
 void from_surface(const Scan& scan, FixtureCalibration& c) {
@@ -153,12 +175,14 @@ FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::pat
                                      const ReadOptions& read_options) {
     FixtureCalibration c;
     c.nominal = read_nominal_fixture(nominal);
+    c.nominal.work_points = with_seams(std::move(c.nominal.work_points), c.nominal.seams);
     c.inputs.push_back({nominal.string(), sha256_of_file(nominal)});
     const fs::path measured = fs::is_directory(observations) ? observations / kSeamPoints : observations;
     c.inputs.push_back({measured.string(), sha256_of_file(measured)});
     switch (c.nominal.method) {
         case FixtureMethod::balls:
-            from_balls(read(observations, read_options), c);
+            c.scan = read(observations, read_options);
+            from_balls(*c.scan, c);
             break;
         case FixtureMethod::points:
         case FixtureMethod::three_points:
@@ -168,10 +192,18 @@ FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::pat
             from_planes(read_touched_points(observations, c.nominal.sigma_mm), c);
             break;
         case FixtureMethod::best_fit:
-            from_surface(read(observations, read_options), c);
+            c.scan = read(observations, read_options);
+            from_surface(*c.scan, c);
             break;
         case FixtureMethod::seams:
             from_seams(read_measured_seams(observations), c);
+            break;
+        case FixtureMethod::boards:
+            c.frame = frame_from_boards(observations, c.nominal, c.numbers);
+            if (c.nominal.boards.camera_file) {
+                c.inputs.push_back(
+                    {c.nominal.boards.camera_file->string(), sha256_of_file(*c.nominal.boards.camera_file)});
+            }
             break;
     }
     return c;

@@ -46,10 +46,16 @@ struct FixtureCalibration {
     std::string date;  ///< ISO 8601, UTC; given by the caller
     std::optional<FrameChange> change;
     std::optional<Acceptance> accepted;
+    std::optional<Scan> scan;  ///< what was measured, where that is a scan
 };
 
-/// Measures the fixture in the observations: a scan for balls, a table of touched points for points and
-/// planes. Throws InputError for files that can't be read or do not fit the nominal one.
+/// The frame from boards in a picture. Throws InputError when none is seen.
+FrameResult frame_from_boards(const std::filesystem::path& picture, const NominalFixture& nominal,
+                              std::vector<MethodNumber>& numbers);
+
+/// Measures the fixture in the observations: a scan for balls and surfaces, a table of touched points for points and
+/// planes, a run for seams, a picture for boards. Throws InputError for files that can't be read or do not fit the
+/// nominal one.
 FixtureCalibration calibrate_fixture(const std::filesystem::path& observations, const std::filesystem::path& nominal,
                                      const ReadOptions& read_options);
 

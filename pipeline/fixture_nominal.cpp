@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/camera_json.hpp"
 #include "pipeline/files.hpp"
 #include "pipeline/json_text.hpp"
 #include "pipeline/text.hpp"
@@ -122,6 +123,19 @@ public:
         return found == names.end() ? otherwise : static_cast<std::size_t>(found - names.begin());
     }
 
+    /// An object of these members alone.
+    Json part(const std::vector<std::string>& keys) {
+        Json object = Json::object();
+        for (const std::string& key : keys) {
+            if (const Json* value = take(key, false)) {
+                object[key] = *value;
+            }
+        }
+        return object;
+    }
+
+    std::vector<std::string>& problems() { return problems_; }
+
     void problem(const std::string& key, const std::string& what) {
         problems_.push_back(path_ + (key.empty() ? "" : "/" + key) + ": " + what);
     }
@@ -194,6 +208,10 @@ NominalSurfaceFile surface_of(Object& root, const std::filesystem::path& folder)
     NominalSurfaceFile surface;
     root.number("least_share", false, surface.least_share, 0, true, 1);
     surface.scan_sensor_mm = root.vector_if_given("sensor_mm");
+    if (root.has("near")) {
+        const Json near = root.part({"near"});
+        surface.near = pose_from(JsonObject(near, "", root.problems(), {"near"}), "near");
+    }
     surface.file = folder / root.text("surface", true);
     surface.unit = static_cast<Unit>(root.choice("surface_unit", false, kUnitNames, 0));
     surface.surface_sensor_mm = root.vector_if_given("surface_sensor_mm");
@@ -222,22 +240,29 @@ void read_method(Object& root, const std::filesystem::path& folder, NominalFixtu
             n.surface = surface_of(root, folder);
             break;
         case FixtureMethod::seams:
-            root.each("seams", true, [&](Object& o) { n.seams.push_back(seam_of(o)); });
+            break;
+        case FixtureMethod::boards:
+            n.boards = nominal_boards(root.part({"boards", "camera", "base_from_camera"}), folder, root.problems());
             break;
     }
+    root.each("seams", n.method == FixtureMethod::seams, [&](Object& o) { n.seams.push_back(seam_of(o)); });
     for (const NamedPoint& feature : n.features) {
         names.push_back(feature.name);
     }
     for (const NominalSeam& seam : n.seams) {
         names.push_back(seam.name);
     }
+    for (const NominalBoard& board : n.boards.boards) {
+        names.push_back(board.name);
+    }
     for (const NominalPlane& plane : n.planes) {
         for (const NamedPoint& point : plane.points) {
             names.push_back(point.name);
         }
     }
-    const bool balls = n.method == FixtureMethod::balls, seams = n.method == FixtureMethod::seams;
-    check_names(root, balls ? "balls" : seams ? "seams" : "points", names);
+    constexpr std::array<const char*, kFixtureMethodNames.size()> kNamed{"balls",   "points", "points", "points",
+                                                                         "surface", "seams",  "boards"};
+    check_names(root, kNamed[static_cast<std::size_t>(n.method)], names);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ Json features_json(const FrameResult& r) {
     for (const FeatureResult& f : r.features) {
         Json row{{"name", f.name},
                  {"check", f.check},
+                 {"place_mm", vector_json(f.place)},
                  {"residual_mm", f.residual_mm},
                  {"residual_sigma", f.residual_sigma},
                  {"shift_mm", vector_json(f.shift_mm)}};

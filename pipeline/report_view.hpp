@@ -47,6 +47,22 @@ struct ViewTorch {
     Eigen::Vector3d axis;
 };
 
+/// A named place, and an arrow from it as it is drawn.
+struct ViewMark {
+    std::string text;
+    Eigen::Vector3d p;  ///< relative to the centre
+    Eigen::Vector3d arrow{0, 0, 0};
+    bool good = true;
+};
+
+/// An ellipsoid as it is drawn: its half axes are columns, each longer than 0.
+struct ViewEllipsoid {
+    std::string text;
+    Eigen::Vector3d p;  ///< relative to the centre
+    Eigen::Matrix3d half_axes;
+    bool good = true;
+};
+
 struct ViewScene {
     bool nominal = false;             ///< there is no scan
     Eigen::Vector3d centre{0, 0, 0};  ///< scan frame, mm
@@ -55,6 +71,8 @@ struct ViewScene {
     std::array<ViewCloud, 2> clouds;  ///< near the seams, and the rest: sparser
     std::vector<ViewSeam> seams;
     std::vector<ViewTorch> torch;
+    std::vector<ViewMark> marks;
+    std::vector<ViewEllipsoid> ellipsoids;
     double scale_mm = 0;  ///< deviation at the end of the colour scale: the largest tolerance
 };
 

@@ -55,8 +55,12 @@ std::string toolbar(const ViewScene& scene) {
     const auto layer = [](const std::string& key, const std::string& label) {
         return "<label><input type=\"checkbox\" data-layer=\"" + key + "\" checked> " + label + "</label>";
     };
-    const bool seams = !scene.seams.empty();
-    std::string html = "<div class=\"toolbar\">" + (scene.nominal ? std::string() : layer("scan", "Scan"));
+    const bool seams = !scene.seams.empty(), marks = !scene.marks.empty();
+    const bool bare = scene.nominal || (marks && scene.clouds[0].points.empty() && scene.clouds[1].points.empty());
+    std::string html = "<div class=\"toolbar\">" + (bare ? std::string() : layer("scan", "Scan"));
+    if (marks) {
+        html += layer("marks", "Features") + layer("ellipsoids", "Uncertainty");
+    }
     if (seams) {
         html += layer("seam", "Seams") + (scene.nominal ? "" : layer("nodes", "Nodes")) + layer("torch", "Torch");
     }

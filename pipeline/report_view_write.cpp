@@ -73,6 +73,21 @@ Json seam_json(const ViewSeam& seam) {
             {"nodes", std::move(nodes)}};
 }
 
+Json mark_json(const ViewMark& mark) {
+    return {{"text", valid_utf8(mark.text)},
+            {"p", trimmed_json(mark.p)},
+            {"arrow", trimmed_json(mark.arrow)},
+            {"good", mark.good}};
+}
+
+Json ellipsoid_json(const ViewEllipsoid& e) {
+    return {{"text", valid_utf8(e.text)},
+            {"p", trimmed_json(e.p)},
+            {"axes",
+             {trimmed_json(e.half_axes.col(0)), trimmed_json(e.half_axes.col(1)), trimmed_json(e.half_axes.col(2))}},
+            {"good", e.good}};
+}
+
 /// Parallel projection onto the page.
 struct Projection {
     Eigen::Vector3d right, up, toward;
@@ -145,6 +160,25 @@ std::string still_seam(const ViewScene& scene, const ViewSeam& seam, const Proje
     return svg;
 }
 
+std::string still_mark(const ViewMark& mark, const Projection& project) {
+    return "<path class=\"still-mark" + std::string(mark.good ? "" : " bad") + "\" d=\"M" + place(project(mark.p)) +
+           "m-6 0h12m-6 -6v12M" + place(project(mark.p)) + 'L' + place(project(mark.p + mark.arrow)) + "\"/>";
+}
+
+/// The outline of an ellipsoid x = p + H u, |u| = 1, in the projection along d: where u . H^-1 d = 0.
+std::string still_ellipsoid(const ViewEllipsoid& e, const Projection& project) {
+    constexpr int kCorners = 48;
+    const Eigen::Vector3d n = (e.half_axes.inverse() * project.toward).normalized(), a = n.unitOrthogonal(),
+                          b = n.cross(a);
+    std::string path;
+    for (int i = 0; i < kCorners; ++i) {
+        const double turn = 2 * std::numbers::pi * i / kCorners;
+        const Eigen::Vector3d u = std::cos(turn) * a + std::sin(turn) * b;
+        path += (i == 0 ? 'M' : 'L') + place(project(e.p + e.half_axes * u));
+    }
+    return "<path class=\"still-mark" + std::string(e.good ? "" : " bad") + "\" d=\"" + path + "Z\"/>";
+}
+
 }  // namespace
 
 std::string view_json(const ViewScene& scene) {
@@ -165,6 +199,13 @@ std::string view_json(const ViewScene& scene) {
     for (const char* stop : kSignedColours) {
         signed_colours.push_back(stop);
     }
+    Json marks = Json::array(), ellipsoids = Json::array();
+    for (const ViewMark& mark : scene.marks) {
+        marks.push_back(mark_json(mark));
+    }
+    for (const ViewEllipsoid& e : scene.ellipsoids) {
+        ellipsoids.push_back(ellipsoid_json(e));
+    }
     const Json json{{"radius", scene.radius_mm},
                     {"camera", camera_json(scene.camera)},
                     {"scale", scene.scale_mm},
@@ -174,17 +215,27 @@ std::string view_json(const ViewScene& scene) {
                     {"unchecked", kUncheckedColour},
                     {"clouds", std::move(clouds)},
                     {"seams", std::move(seams)},
-                    {"torch", std::move(torch)}};
+                    {"torch", std::move(torch)},
+                    {"marks", std::move(marks)},
+                    {"ellipsoids", std::move(ellipsoids)}};
     return json.dump();
 }
 
 std::string view_svg(const ViewScene& scene) {
     const Projection project(scene);
     std::string svg = "<svg class=\"still\" role=\"img\" viewBox=\"0 0 " + decimal(kViewWidth, 0) + ' ' +
-                      decimal(kViewHeight, 0) + "\"><title>Scan and seams, seen from the air side</title>";
+                      decimal(kViewHeight, 0) + "\"><title>" +
+                      std::string(scene.seams.empty() ? "The part" : "Scan and seams, seen from the air side") +
+                      "</title>";
     svg += still_cloud(scene.clouds[1], project) + still_cloud(scene.clouds[0], project);
     for (const ViewSeam& seam : scene.seams) {
         svg += still_seam(scene, seam, project);
+    }
+    for (const ViewMark& mark : scene.marks) {
+        svg += still_mark(mark, project);
+    }
+    for (const ViewEllipsoid& e : scene.ellipsoids) {
+        svg += still_ellipsoid(e, project);
     }
     return svg + "</svg>\n";
 }

@@ -176,6 +176,42 @@
     });
   }
 
+  const GOOD = '#2f7cc4', BAD = '#e3122f';
+  // From each mark as far as its arrow reaches; the head takes a third.
+  function arrowRings(marks) {
+    return marks.filter((mark) => vector(mark.arrow).length() > 1e-3).flatMap((mark) => {
+      const from = vector(mark.p), arrow = vector(mark.arrow), along = arrow.clone().normalize();
+      const colour = new THREE.Color(mark.good ? GOOD : BAD);
+      const ring = (share, width, start) =>
+        ({ p: from.clone().addScaledVector(arrow, share), along, colour, width, start, dash: -1 });
+      return [ring(0, 2, true), ring(0.67, 2, false), ring(0.67, 6, true), ring(1, 0, false)];
+    });
+  }
+
+  // Half transparent, darker where they are seen edge on.
+  function ellipsoid(shape) {
+    const mesh = new THREE.Mesh(new THREE.SphereGeometry(1, 40, 24), new THREE.ShaderMaterial({
+      transparent: true, depthWrite: false,
+      uniforms: { tint: { value: new THREE.Color(shape.good ? GOOD : BAD) } },
+      vertexShader: `
+        varying vec3 out_;
+        void main() {
+          out_ = normalMatrix * normal;
+          gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        }`,
+      fragmentShader: `
+        uniform vec3 tint;
+        varying vec3 out_;
+        void main() {
+          float rim = 1.0 - abs(normalize(out_).z);
+          gl_FragColor = vec4(tint, 0.3 + 0.6 * rim * rim);
+        }`
+    }));
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.makeBasis(...shape.axes.map(vector)).setPosition(vector(shape.p));
+    return mesh;
+  }
+
   // White balls with a dark rim, `size` CSS pixels wide.
   function balls(positions, size) {
     const geometry = new THREE.BufferGeometry();
@@ -307,7 +343,8 @@
   // Says station and deviation of the seam sample under the mouse.
   function readOut(canvas, camera) {
     const tip = document.getElementById('tip');
-    const samples = scene.seams.flatMap((seam, k) => seam.samples.map((sample) => ({ k, sample, p: vector(sample) })));
+    const samples = scene.seams.flatMap((seam, k) => seam.samples.map((sample) => ({ k, sample, p: vector(sample) })))
+      .concat([...scene.marks, ...scene.ellipsoids].map((mark) => ({ text: mark.text, p: vector(mark.p) })));
     const nearest = (event) => {
       const box = canvas.getBoundingClientRect();
       const x = event.clientX - box.left, y = event.clientY - box.top;
@@ -323,8 +360,8 @@
       const best = event.buttons ? null : nearest(event);
       tip.hidden = best === null;
       if (best === null) return;
-      const [station, distance, sigma, modelled] = best.sample.slice(3);
-      tip.textContent = `Seam ${best.k} · station ${station.toFixed(1)} mm · ` + (distance === null ? 'not checked' :
+      const [station, distance, sigma, modelled] = best.text ? [] : best.sample.slice(3);
+      tip.textContent = best.text || `Seam ${best.k} · station ${station.toFixed(1)} mm · ` + (distance === null ? 'not checked' :
         `deviation ${distance.toFixed(3)} ± ${sigma.toFixed(3)} mm`) + (modelled ? ' · bridged' : '');
       tip.style.left = Math.min(best.x + 14, canvas.clientWidth - 300) + 'px';
       tip.style.top = (best.y + 16) + 'px';
@@ -335,7 +372,7 @@
     canvas.addEventListener('pointerdown', (event) => { pressed = [event.clientX, event.clientY]; });
     canvas.addEventListener('pointerup', (event) => {
       const hit = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4 ? nearest(event) : null;
-      if (hit) document.dispatchEvent(new CustomEvent('seampath-pick', { detail: { seam: hit.k, station: hit.sample[3] } }));
+      if (hit && hit.sample) document.dispatchEvent(new CustomEvent('seampath-pick', { detail: { seam: hit.k, station: hit.sample[3] } }));
     });
   }
 
@@ -397,14 +434,17 @@
     const canvas = renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
-    canvas.setAttribute('aria-label', '3D view of the scan with its seams, coloured by their deviation from it; all ' +
+    canvas.setAttribute('aria-label', (scene.marks.length > 0 ? '3D view of the features and of the uncertainty; all ' :
+      '3D view of the scan with its seams, coloured by their deviation from it; all ') +
       'numbers are in the tables below. Arrow keys turn it, plus and minus zoom, 0 shows all.');
     const world = new THREE.Scene();
     const layers = {
       scan: scene.clouds.filter((cloud) => cloud.count > 0).map(pointCloud),
       seam: [new THREE.Group()],
       nodes: [balls(scene.seams.flatMap((seam) => seam.nodes.flat()), 11)],
-      torch: [tubes(torchRings(0.16 * scene.radius), false)]
+      torch: [tubes(torchRings(0.16 * scene.radius), false)],
+      marks: [balls(scene.marks.flatMap((mark) => mark.p), 11), tubes(arrowRings(scene.marks), false)],
+      ellipsoids: scene.ellipsoids.map(ellipsoid)
     };
     const unculled = (object) => object.traverse((part) => { part.frustumCulled = false; });
     const place = new THREE.Group();                // the station whose section is shown
@@ -464,7 +504,9 @@
     const points = (seams) => seams.flatMap((seam) => seam.samples.map(vector));
     const aspect = () => host.clientWidth / host.clientHeight;
     const everything = () => {
-      const all = points(scene.seams);
+      const reach = scene.ellipsoids.flatMap((e) => e.axes.flatMap((axis) =>
+        [1, -1].map((side) => vector(e.p).addScaledVector(vector(axis), side))));
+      const all = points(scene.seams).concat(scene.marks.map((mark) => vector(mark.p)), reach);
       const r = 0.5 * scene.radius;
       return camera.pose(scene.camera, all.length > 1 ? all : [vector([-r, -r, -r]), vector([r, r, r])], aspect());
     };

@@ -5,6 +5,7 @@
 #include "pipeline/files.hpp"
 #include "pipeline/fixture_calibration.hpp"
 #include "pipeline/fixture_history.hpp"
+#include "pipeline/fixture_page.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/text.hpp"
 #include "stages/error.hpp"
@@ -22,6 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kResult = "result.json";
 constexpr const char* kCandidate = "candidate.json";
+constexpr const char* kPage = "report.html";
+constexpr const char* kCandidatePage = "candidate.html";
 constexpr const char* kHistory = "history.db";
 
 struct FixtureArguments {
@@ -62,6 +65,7 @@ int fixture(const FixtureArguments& given) {
     folder.write(takes_over ? kResult : kCandidate, json);
     if (takes_over) {
         folder.remove(kCandidate);
+        folder.remove(kCandidatePage);
         folder.remove("frames");
     }
     if (takes_over && c.frame.pass()) {  // no robot file for a frame that can't be trusted
@@ -73,6 +77,7 @@ int fixture(const FixtureArguments& given) {
     row.appraiser = given.appraiser;
     row.part = given.part;
     add_to_history(out / kHistory, row);
+    folder.write(takes_over ? kPage : kCandidatePage, fixture_page(c, read_history(out / kHistory)));
     std::cout << (given.json ? json : fixture_result_text(c));
     std::cerr << (out / (takes_over ? kResult : kCandidate)).string() << " written"
               << (takes_over ? "" : "; the accepted calibration stays until --accept --reason TEXT") << "\n";
@@ -81,8 +86,9 @@ int fixture(const FixtureArguments& given) {
 
 CLI::App* fixture_app(CLI::App& calibrate, FixtureArguments& given) {
     CLI::App* app = calibrate.add_subcommand("fixture", "where a part or fixture sits, and how sure that is");
-    app->add_option("OBSERVATIONS", given.observations,
-                    "scan (balls, best-fit), table name,x,y,z (points, planes), or folder of a run (seams)")
+    app->add_option(
+           "OBSERVATIONS", given.observations,
+           "scan (balls, best-fit), table name,x,y,z (points, planes), folder of a run (seams), or picture (boards)")
         ->required();
     app->add_option("--nominal", given.nominal, "JSON: where the features are on the part")->required();
     app->add_option("--out", given.out, "folder for result, history and robot files")->required();

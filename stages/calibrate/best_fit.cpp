@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <Eigen/Dense>
@@ -35,6 +36,7 @@ constexpr double kSightCosine = 0.05;        // of the line of sight to it
 constexpr double kSharpFactor = 3;           // of the median roughness: more is an edge
 constexpr double kLeastOfGolden = 0.5;       // of a golden scan, that must be seen
 constexpr double kMuchMore = 1.2;            // that a pose shows than the best of those that are held
+constexpr double kMostPast = 0.05;           // of what is seen; at borders alone the scan may see past the right pose
 constexpr std::size_t kFewestPoints = 1000;  // of either cloud
 
 void check_size(const Scan& scan) {
@@ -66,8 +68,9 @@ Surfaces surfaces_of(const Scan& scan, const Scan& nominal, const BestFitOptions
     const double noise = positive_noise(scan_scale);
     const double area = static_cast<double>(part.points.size()) * part_scale.spacing * part_scale.spacing;
     const double spacing = std::max({2.5 * part_scale.spacing, 2 * scan_scale.spacing, std::sqrt(area / kMostSurfels)});
-    const std::vector<Surfel> fine =
+    std::vector<Surfel> fine =
         calibrating::smooth_ones(calibrating::surfels_of(part, spacing, 1.5 * spacing), kSharpFactor, 0.3 * noise);
+    calibrating::find_sights(fine, part, part_scale.spacing);
     const double coarse = std::max(2 * spacing, std::sqrt(area_of(fine, spacing) / kCoarseSurfels));
     const double reach = std::max({4 * scan_scale.spacing, 1.5 * spacing, 8 * noise});
     if (fine.size() < 20) {
@@ -77,7 +80,10 @@ Surfaces surfaces_of(const Scan& scan, const Scan& nominal, const BestFitOptions
     Surfaces s{{TargetSurface(fine, spacing), TargetSurface(calibrating::thinned(fine, coarse), coarse)}, {}};
     s.scan.coarse = calibrating::thinned(
         calibrating::smooth_ones(calibrating::surfels_of(seen, coarse / 2, reach), kSharpFactor, noise), coarse);
-    s.scan.least_cosine = seen.normals ? kSideCosine : kSightCosine;
+    s.scan.seeing = {seen.normals ? kSideCosine : kSightCosine, seen.sensor};
+    if (seen.sensor) {
+        s.scan.depth.emplace(seen, scan_scale.spacing);
+    }
     s.scan.noise_mm = noise;
     const std::size_t step = 1 + seen.points.size() / kSomePoints;
     for (std::size_t i = 0; i < seen.points.size(); ++i) {
@@ -105,19 +111,38 @@ std::string turn_text(const Isometry3d& from, const Isometry3d& to) {
            text(step.translation(), 1) + " mm";
 }
 
+// The scan shows what lies behind places of the part that nothing hides.
+bool contradicted(const FoundPose& pose) {
+    return static_cast<double>(pose.past) > kMostPast * static_cast<double>(pose.seen);
+}
+
+// Poses that are not about where the part is said to be.
+void leave_near(const Isometry3d& near, const std::vector<Surfel>& surfels, std::vector<FoundPose>& poses) {
+    constexpr double kNearTurn = std::numbers::pi / 4;  // half of the least turn that lays a box on itself
+    Eigen::AlignedBox3d box;
+    for (const Surfel& s : surfels) {
+        box.extend(s.p);
+    }
+    std::erase_if(poses, [&](const FoundPose& pose) {
+        const Isometry3d& T = pose.fit.base_from_part;
+        return Eigen::AngleAxisd(near.linear().transpose() * T.linear()).angle() > kNearTurn ||
+               (T * box.center() - near * box.center()).norm() > box.diagonal().norm() / 2;
+    });
+}
+
 // The pose that stands, and why it may not.
 FoundPose choose(const std::vector<FoundPose>& poses, std::size_t surfels, double least_share, FrameResult& result) {
     const double least = least_share * static_cast<double>(surfels);
     std::vector<FoundPose> enough;
     std::copy_if(poses.begin(), poses.end(), std::back_inserter(enough),
-                 [&](const FoundPose& pose) { return static_cast<double>(pose.seen) >= least; });
+                 [&](const FoundPose& pose) { return static_cast<double>(pose.seen) >= least && !contradicted(pose); });
     if (enough.empty()) {
         std::size_t most = 0;
         for (const FoundPose& pose : poses) {
-            most = std::max(most, pose.seen);
+            most = contradicted(pose) ? most : std::max(most, pose.seen);
         }
         result.faults.push_back("no pose was found in which the scan shows " + fixed(100 * least_share, 0) +
-                                " % of the nominal surface; the best shows " +
+                                " % of the nominal surface and nothing behind it; the best shows " +
                                 fixed(100.0 * static_cast<double>(most) / static_cast<double>(surfels), 1) +
                                 " %; scan more of the part, or lower least_share");
         return poses.empty() ? FoundPose{} : poses.front();
@@ -139,7 +164,7 @@ FoundPose choose(const std::vector<FoundPose>& poses, std::size_t surfels, doubl
                                 turn_text(best.fit.base_from_part, other.fit.base_from_part) + " (it shows " +
                                 std::to_string(other.seen) + " places of " + std::to_string(best.seen) +
                                 "); its shape, or what the scan shows of it, is symmetric: scan a feature that tells "
-                                "the poses apart");
+                                "the poses apart, or say about where the part stands (near)");
     }
     return best;
 }
@@ -153,16 +178,31 @@ BestFit calibrate_surface(const Scan& scan, const Scan& nominal, const std::vect
     const Surfaces s = surfaces_of(scan, nominal, options);
     const std::size_t surfels = s.nominal.fine.surfels().size();
     // A scan has borders of its own, and laid on another by half of it or less it may lie anywhere.
-    const double least_share =
-        nominal.normals.empty() ? std::max(kLeastOfGolden, options.least_share) : options.least_share;
+    const bool golden = nominal.normals.empty();
+    const double least_share = golden ? std::max(kLeastOfGolden, options.least_share) : options.least_share;
+    if (golden && !options.near) {
+        throw InputError("calibrate: " + nominal.name +
+                         " is a golden scan: it shows one side of the part, which may look like another; near (about "
+                         "base_from_part: x, y, z in mm, quaternion w, x, y, z) was needed in the nominal file");
+    }
+    if (golden && !s.scan.depth) {
+        throw InputError("calibrate: " + scan.name +
+                         " has normals and no sensor; on a golden scan a pose is proven by what the sensor does not "
+                         "see past: sensor_mm was needed in the nominal file (about where the sensor stood in the "
+                         "frame of the scan)");
+    }
     BestFit fit;
     fit.scan_noise_mm = s.scan.noise_mm;
-    FoundPose best = choose(calibrating::search_poses(s.nominal, s.scan, kWeakShare), surfels, least_share, fit.frame);
+    std::vector<FoundPose> poses = calibrating::search_poses(s.nominal, s.scan, kWeakShare);
+    if (options.near) {
+        leave_near(*options.near, s.nominal.fine.surfels(), poses);
+    }
+    FoundPose best = choose(poses, surfels, least_share, fit.frame);
     if (best.seen == 0) {
         return fit;
     }
     best.fit = calibrating::fit_to_surface(s.nominal.fine, s.scan.points, best.fit.base_from_part, best.fit.gate_mm,
-                                           s.scan.noise_mm, s.scan.least_cosine, kWeakShare);
+                                           s.scan.noise_mm, s.scan.seeing, kWeakShare);
     fit.scale_mm = best.fit.scale_mm;
     fit.share_seen = static_cast<double>(best.seen) / static_cast<double>(surfels);
     fit.points_taken = best.fit.contacts.size();

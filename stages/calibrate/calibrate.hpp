@@ -16,8 +16,7 @@
 
 /// Where a part or fixture sits in the frame of a sensor or robot ("base"), from features whose nominal place on the
 /// part is known; and what that is worth. Covariances of frames are in the order and axes of stages/geometry/rigid.hpp.
-/// Nothing hangs on the order of features or points. Boards in images would join here as one more source of
-/// FrameFeature.
+/// Nothing hangs on the order of features or points.
 namespace seampath {
 
 /// One number measured: how far `point` is from a plane of the part.
@@ -35,15 +34,24 @@ struct FramePoint {
     Eigen::Matrix3d covariance;  ///< of `measured`, mm^2, positive definite
 };
 
-/// A ball, touched point or datum plane. Features of level 0 settle as much of the frame as they can, those of level 1
-/// what is left, and so on (datum precedence, ISO 5459); features of one level are weighed by their sigmas. A check
-/// feature settles nothing; how far it is off is reported.
+/// A thing whose place on the part is known, e.g. a board, measured with all six of its numbers.
+struct FramePose {
+    Eigen::Isometry3d nominal;            ///< part from thing
+    Eigen::Isometry3d measured;           ///< base from thing
+    Matrix6 covariance;                   ///< of `measured`, positive definite
+    std::vector<Eigen::Vector3d> places;  ///< on the thing, mm: where distances are told
+};
+
+/// A ball, touched point, datum plane or board. Features of level 0 settle as much of the frame as they can, those of
+/// level 1 what is left, and so on (datum precedence, ISO 5459); features of one level are weighed by their sigmas. A
+/// check feature settles nothing; how far it is off is reported.
 struct FrameFeature {
     std::string name;
     int level = 0;
     bool check = false;
     std::vector<FramePoint> points;
     std::vector<FrameRow> rows;
+    std::vector<FramePose> poses = {};
 };
 
 struct WorkPoint {
@@ -66,6 +74,7 @@ struct FrameOptions {
 struct FeatureResult {
     std::string name;
     bool check = false;
+    Eigen::Vector3d place{0, 0, 0};     ///< part frame, mm: the middle of what was measured of it
     double residual_mm = 0;             ///< rms of its distances
     double residual_sigma = 0;          ///< the same over their expected scatter: about 1 or below when all is well
     bool can_be_left_out = false;       ///< the others alone determine the frame
@@ -108,8 +117,9 @@ struct FrameResult {
     bool pass() const { return faults.empty(); }
 };
 
-/// Least squares on SE(3), by level. Begins at `start`, or without one at the rigid motion through the points. Throws
-/// InputError when there is no feature, a sigma is not above 0, or, without a start, fewer than 3 points.
+/// Least squares on SE(3), by level. Begins at `start`, or without one at the rigid motion through the points and the
+/// poses' places. Throws InputError when there is no feature, a sigma is not above 0, or, without a start, fewer than 3
+/// of them.
 FrameResult calibrate_frame(std::vector<FrameFeature> features, const std::vector<WorkPoint>& work_points,
                             const FrameOptions& options, const std::optional<Eigen::Isometry3d>& start = {});
 
@@ -165,6 +175,8 @@ struct BestFitOptions {
     FrameOptions frame;
     double least_share = 0.15;                                         ///< of the nominal surface that the scan shows
     std::optional<Eigen::Vector3d> scan_sensor_mm, nominal_sensor_mm;  ///< about where they were seen from
+    std::optional<Eigen::Isometry3d> near;  ///< about base_from_part: poses turned by 45 degrees from it, or shifted by
+                                            ///< half the part's size, are none
 };
 
 /// A scan laid on a nominal surface. The features of `frame` are the surface's smooth faces.
@@ -179,11 +191,13 @@ struct BestFit {
 
 /// The frame that lays a scan on a nominal surface, without a guess: poses by point-pair features, then point-to-plane
 /// least squares with Tukey's biweight. Whatever else the scan shows may be around. The nominal surface is evenly
-/// spread points with normals (a mesh that was sampled), or a golden scan. The covariance is that of clustered errors
-/// (Liang and Zeger, Biometrika 73, 1986), so that neighbours may share theirs. Faults name the directions that the
-/// surface does not hold, and poses that fit as well as the best. `frame.weak_ratio` is not used: a direction that
+/// spread points with normals (a mesh that was sampled), or a golden scan, which needs `near`: it shows one side of the
+/// part, which may look like another. Where the scan's sensor is known, only what it can see of the surface counts, and
+/// a pose is none in which it sees past places of the surface that nothing hides. The covariance is that of clustered
+/// errors (Liang and Zeger, Biometrika 73, 1986), so that neighbours may share theirs. Faults name the directions that
+/// the surface does not hold, and poses that fit as well as the best. `frame.weak_ratio` is not used: a direction that
 /// holds less than a five-hundredth of the mean information is held by errors of normals. Throws InputError when a
-/// cloud is too small, or nothing says from which side it was seen.
+/// cloud is too small, nothing says from which side it was seen, or a golden scan lacks `near` or the scan's sensor.
 BestFit calibrate_surface(const Scan& scan, const Scan& nominal, const std::vector<WorkPoint>& work_points,
                           const BestFitOptions& options);
 

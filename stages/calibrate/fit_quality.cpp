@@ -115,6 +115,7 @@ FeatureResult face_result(const FrameFit& fit, const FaceSums& face, const Sums&
                           const std::vector<WorkPoint>& work_points, double weak_ratio) {
     FeatureResult row;
     const Vector3d at = fit.base_from_part.inverse() * (face.middle / static_cast<double>(face.count));
+    row.place = at;
     row.name = "face at (" + fixed(at.x(), 0) + ", " + fixed(at.y(), 0) + ", " + fixed(at.z(), 0) + ")";
     row.residual_mm = std::sqrt(face.squares / face.weight);
     row.residual_sigma = row.residual_mm / fit.scale_mm;

@@ -50,6 +50,12 @@ void check(const std::vector<FrameFeature>& features) {
                                  "\" is not positive definite; a 1-sigma above 0 in each direction was needed");
             }
         }
+        for (const FramePose& pose : feature.poses) {
+            if (Eigen::LLT<Eigen::MatrixXd>(pose.covariance).info() != Eigen::Success) {
+                throw InputError("calibrate: the covariance of \"" + feature.name +
+                                 "\" is not positive definite; more of it must be seen");
+            }
+        }
         for (const FrameRow& row : feature.rows) {
             if (!(row.sigma_mm > 0)) {
                 throw InputError("calibrate: the 1-sigma of \"" + feature.name + "\" is " + shortest(row.sigma_mm) +
@@ -65,6 +71,12 @@ Isometry3d start_of(const std::vector<FrameFeature>& features) {
         for (const FramePoint& point : feature.points) {
             nominal.push_back(point.nominal);
             measured.push_back(point.measured);
+        }
+        for (const FramePose& pose : feature.poses) {
+            for (const Vector3d& place : pose.places) {
+                nominal.emplace_back(pose.nominal * place);
+                measured.emplace_back(pose.measured * place);
+            }
         }
     }
     if (nominal.size() < 3) {
@@ -82,15 +94,27 @@ FeatureResult residual_of(const FrameFeature& feature, const Isometry3d& T) {
     for (const FramePoint& point : feature.points) {
         squares += (point.measured - T * point.nominal).squaredNorm();
         result.shift_mm += T.linear().transpose() * (point.measured - T * point.nominal);
+        result.place += point.nominal;
         count += 1;
     }
     for (const FrameRow& row : feature.rows) {
         const double d = row.normal.dot(T.inverse() * row.point) - row.offset_mm;
         squares += d * d;
         result.shift_mm += d * row.normal;
+        result.place += T.inverse() * row.point;
         count += 1;
     }
+    for (const FramePose& pose : feature.poses) {
+        for (const Vector3d& place : pose.places) {
+            const Vector3d off = pose.measured * place - T * (pose.nominal * place);
+            squares += off.squaredNorm();
+            result.shift_mm += T.linear().transpose() * off;
+            result.place += pose.nominal * place;
+            count += 1;
+        }
+    }
     result.shift_mm /= count;
+    result.place /= count;
     result.residual_mm = std::sqrt(squares / count);
     return result;
 }
@@ -109,6 +133,14 @@ double predicted_sigmas(const FrameFeature& feature, const Solution& s) {
         const double d = row.normal.dot(q) - row.offset_mm;
         squares += d * d / (row.sigma_mm * row.sigma_mm + m.dot(covariance_at(s.covariance, s.T, q) * m));
         count += 1;
+    }
+    for (const FramePose& pose : feature.poses) {
+        const Isometry3d fitted = s.T * pose.nominal;
+        const Vector6 r = displacement(pose.measured, fitted);
+        const Matrix6 J = change_of_reference(s.T.translation(), fitted.translation());
+        const Eigen::MatrixXd C = pose.covariance + J * s.covariance * J.transpose();
+        squares += r.dot(C.llt().solve(r));
+        count += 6;
     }
     return std::sqrt(squares / count);
 }

@@ -35,6 +35,15 @@ std::vector<FrameFeature> measured_anew(const std::vector<FrameFeature>& feature
             const double off = row.normal.dot(T.inverse() * row.point) - row.offset_mm;
             row.point += (factor * row.sigma_mm * normal(random) - off) * (T.linear() * row.normal);
         }
+        for (FramePose& pose : feature.poses) {
+            Vector6 e;
+            for (double& x : e) {
+                x = normal(random);
+            }
+            const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>(pose.covariance).matrixL();
+            const Isometry3d fitted = T * pose.nominal;
+            pose.measured = displaced(fitted, factor * root * e, fitted.translation());
+        }
     }
     return again;
 }

@@ -38,6 +38,11 @@ void for_points(std::span<const FrameFeature> features, const F& f) {
         for (const FrameRow& row : feature.rows) {
             f(row.point);
         }
+        for (const FramePose& pose : feature.poses) {
+            for (const Vector3d& place : pose.places) {
+                f(pose.measured * place);
+            }
+        }
     }
 }
 
@@ -70,6 +75,17 @@ Sums sums_of(const FrameFeature& feature, const Isometry3d& T, const Vector3d& a
         Vector6 J;
         J << -m, -(row.point - about).cross(m);
         add_row(sums, J / row.sigma_mm, r / row.sigma_mm);
+    }
+    for (const FramePose& pose : feature.poses) {
+        const Eigen::LLT<Eigen::MatrixXd> llt(pose.covariance);
+        ensure(llt.info() == Eigen::Success, "a covariance is positive definite");
+        const Isometry3d fitted = T * pose.nominal;
+        // A step about `about` shifts what lies elsewhere by its turn, too.
+        const Eigen::MatrixXd J = llt.matrixL().solve(change_of_reference(about, fitted.translation()));
+        const Eigen::VectorXd r = llt.matrixL().solve(displacement(pose.measured, fitted));
+        for (Eigen::Index k = 0; k < 6; ++k) {
+            add_row(sums, J.row(k).transpose(), r[k]);
+        }
     }
     return sums;
 }

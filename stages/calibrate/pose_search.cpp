@@ -23,11 +23,23 @@ constexpr std::size_t kHeld = 12, kOpen = 4;  // of those, refined on the points
 constexpr double kCoarseCosine = 0.8;         // between normals of surfels
 constexpr std::size_t kPlanes = 4;            // of part and scene that are laid on each other
 
+// What should be seen, and of which the scan shows what is behind it.
+std::size_t seen_past(const TargetSurface& surface, const ScannedSurface& scan, const Isometry3d& T, double gate,
+                      const std::vector<std::uint8_t>& seen) {
+    const Sights about = surface.sights(scan.seeing, T);
+    std::size_t past = 0;
+    for (std::size_t i = 0; i < seen.size() && scan.depth; ++i) {
+        const Surfel& s = surface.surfels()[i];
+        past += seen[i] == 0 && (s.sights & about).any() && scan.depth->sees_past(T * s.p, gate);
+    }
+    return past;
+}
+
 // By the surfels that have a point within `gate`; turns count by the surfels' own lever.
-void weigh(const TargetSurface& surface, std::span<const SidedPoint> points, double gate, double least_cosine,
-           double weak_ratio, FoundPose& pose) {
+std::vector<std::uint8_t> weigh(const TargetSurface& surface, std::span<const SidedPoint> points, double gate,
+                                const Seeing& seeing, double weak_ratio, FoundPose& pose) {
     std::vector<std::uint8_t> seen(surface.surfels().size(), 0);
-    for (const Contact& c : surface.contacts(points, pose.fit.base_from_part, gate, least_cosine)) {
+    for (const Contact& c : surface.contacts(points, pose.fit.base_from_part, gate, seeing)) {
         seen[c.surfel] = 1;
     }
     Vector3d middle = Vector3d::Zero();
@@ -38,7 +50,7 @@ void weigh(const TargetSurface& surface, std::span<const SidedPoint> points, dou
         }
     }
     if (pose.seen < 6) {
-        return;
+        return seen;
     }
     const double n = static_cast<double>(pose.seen);
     middle /= n;
@@ -61,6 +73,7 @@ void weigh(const TargetSurface& surface, std::span<const SidedPoint> points, dou
     if (shares[0] > weak_ratio * shares.mean()) {
         pose.information = std::exp(shares.array().log().mean());
     }
+    return seen;
 }
 
 // The width of the poses that most lies on: a pose that fits badly does not count what is near by its own wide one.
@@ -196,11 +209,12 @@ std::vector<FoundPose> search_poses(const NominalSurface& nominal, const Scanned
     for (const Surfel& s : scan.coarse) {
         coarse.push_back({s.p, s.n});
     }
+    const Seeing seeing{kCoarseCosine, scan.seeing.sensor};
     std::vector<FoundPose> poses(starts.size());
     parallel_for(starts.size(), 1, [&](std::size_t i) {
         poses[i].fit = fit_to_surface(nominal.coarse, coarse, starts[i], spacing, std::max(scan.noise_mm, spacing / 40),
-                                      kCoarseCosine, weak_ratio);
-        weigh(nominal.coarse, coarse, poses[i].fit.gate_mm, kCoarseCosine, weak_ratio, poses[i]);
+                                      seeing, weak_ratio);
+        weigh(nominal.coarse, coarse, poses[i].fit.gate_mm, seeing, weak_ratio, poses[i]);
     });
     keep_distinct(poses, nominal.coarse, spacing / 2);
     std::vector<FoundPose> fine;
@@ -214,12 +228,13 @@ std::vector<FoundPose> search_poses(const NominalSurface& nominal, const Scanned
     parallel_for(fine.size(), 1, [&](std::size_t i) {
         const Isometry3d start = fine[i].fit.base_from_part;
         fine[i] = {};
-        fine[i].fit = fit_to_surface(nominal.fine, scan.some, start, nominal.fine.spacing(), scan.noise_mm,
-                                     scan.least_cosine, weak_ratio);
+        fine[i].fit = fit_to_surface(nominal.fine, scan.some, start, nominal.fine.spacing(), scan.noise_mm, scan.seeing,
+                                     weak_ratio);
     });
     const double gate = common_gate(fine);
     for (FoundPose& pose : fine) {
-        weigh(nominal.fine, scan.points, gate, scan.least_cosine, weak_ratio, pose);
+        const auto seen = weigh(nominal.fine, scan.points, gate, scan.seeing, weak_ratio, pose);
+        pose.past = seen_past(nominal.fine, scan, pose.fit.base_from_part, gate, seen);
     }
     keep_distinct(fine, nominal.fine, nominal.fine.spacing());
     return fine;

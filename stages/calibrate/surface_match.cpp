@@ -54,9 +54,9 @@ Sums weighted_sums(const FrameFit& fit, std::span<const SidedPoint> points) {
 }
 
 // One step; its length in mm.
-double step_of(const TargetSurface& surface, std::span<const SidedPoint> points, double least_cosine, double weak_ratio,
-               FrameFit& fit) {
-    fit.contacts = surface.contacts(points, fit.base_from_part, fit.gate_mm, least_cosine);
+double step_of(const TargetSurface& surface, std::span<const SidedPoint> points, const Seeing& seeing,
+               double weak_ratio, FrameFit& fit) {
+    fit.contacts = surface.contacts(points, fit.base_from_part, fit.gate_mm, seeing);
     if (fit.contacts.size() < 6) {
         return 0;
     }
@@ -76,8 +76,9 @@ Vector6 contact_row(const Contact& contact, const Vector3d& p, const Vector3d& a
 }
 
 std::vector<Contact> TargetSurface::contacts(std::span<const SidedPoint> points, const Isometry3d& T, double gate,
-                                             double least_cosine) const {
+                                             const Seeing& seeing) const {
     const Isometry3d back = T.inverse();
+    const Sights about = sights(seeing, T);
     const double lateral = 0.8 * spacing_;  // half the diagonal of a surfel's cell, and a little
     std::vector<Contact> found(points.size());
     std::vector<std::uint8_t> touches(points.size(), 0);
@@ -87,7 +88,8 @@ std::vector<Contact> TargetSurface::contacts(std::span<const SidedPoint> points,
         for (const std::uint32_t k : grid_.near(q)) {
             const Surfel& s = surfels_[k];
             const double d = s.distance(q), along2 = (q - s.p).squaredNorm() - d * d;
-            if (std::abs(d) < best && along2 < lateral * lateral && s.n.dot(side) > least_cosine) {
+            if (std::abs(d) < best && along2 < lateral * lateral && s.n.dot(side) > seeing.least_cosine &&
+                (s.sights & about).any()) {
                 best = std::abs(d);
                 found[i] = {i, k, d, Vector3d::Zero()};
                 touches[i] = 1;
@@ -107,14 +109,14 @@ std::vector<Contact> TargetSurface::contacts(std::span<const SidedPoint> points,
 }
 
 FrameFit fit_to_surface(const TargetSurface& surface, std::span<const SidedPoint> points, const Isometry3d& start,
-                        double first_gate, double least_scale_mm, double least_cosine, double weak_ratio) {
+                        double first_gate, double least_scale_mm, const Seeing& seeing, double weak_ratio) {
     FrameFit fit;
     fit.base_from_part = start;
     fit.gate_mm = first_gate;
     fit.weak_ratio = weak_ratio;
     for (int width = 0; width < kWidths; ++width) {
         for (int round = 0; round < kRoundsAWidth; ++round) {
-            if (step_of(surface, points, least_cosine, weak_ratio, fit) < 1e-3 * fit.gate_mm) {
+            if (step_of(surface, points, seeing, weak_ratio, fit) < 1e-3 * fit.gate_mm) {
                 break;
             }
         }
@@ -129,11 +131,11 @@ FrameFit fit_to_surface(const TargetSurface& surface, std::span<const SidedPoint
         fit.gate_mm = wanted;
     }
     for (int round = 0; round < kWidths; ++round) {  // with the width at rest, to the end
-        if (step_of(surface, points, least_cosine, weak_ratio, fit) < 1e-5 * fit.scale_mm) {
+        if (step_of(surface, points, seeing, weak_ratio, fit) < 1e-5 * fit.scale_mm) {
             break;
         }
     }
-    fit.contacts = surface.contacts(points, fit.base_from_part, fit.gate_mm, least_cosine);
+    fit.contacts = surface.contacts(points, fit.base_from_part, fit.gate_mm, seeing);
     return fit;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "stages/calibrate/frame_solver.hpp"
+#include "stages/calibrate/sight.hpp"
 #include "stages/calibrate/surfels.hpp"
 
 /// Points held against a surface, and the frame that makes their distances least.
@@ -25,24 +26,42 @@ struct Contact {
     Eigen::Vector3d normal;  ///< base frame
 };
 
+/// From where points were seen, and what they may lie on.
+struct Seeing {
+    double least_cosine = 0;                ///< of a point's side to the normal of what it lies on
+    std::optional<Eigen::Vector3d> sensor;  ///< base frame; what it can't see they do not lie on
+};
+
 /// A surface to hold points against.
 class TargetSurface {
 public:
     TargetSurface(std::vector<Surfel> surfels, double spacing)
-        : surfels_(std::move(surfels)), spacing_(spacing), grid_(surfels_, 1.5 * spacing) {}
+        : surfels_(std::move(surfels)), spacing_(spacing), grid_(surfels_, 1.5 * spacing) {
+        for (const Surfel& s : surfels_) {
+            box_.extend(s.p);
+        }
+    }
 
     const std::vector<Surfel>& surfels() const { return surfels_; }
     double spacing() const { return spacing_; }
 
-    /// Of each point that lies within `gate` of a surfel turned to its side, no further along the surface than the
-    /// surfel reaches, the nearest by that distance. In the order of the points.
+    /// The directions from which what saw the points may see the surface.
+    Sights sights(const Seeing& seeing, const Eigen::Isometry3d& base_from_part) const {
+        return sights_from(
+            seeing.sensor ? std::optional<Eigen::Vector3d>(base_from_part.inverse() * *seeing.sensor) : std::nullopt,
+            box_);
+    }
+
+    /// Of each point that lies within `gate` of a surfel turned to its side and in sight, no further along the surface
+    /// than the surfel reaches, the nearest by that distance. In the order of the points.
     std::vector<Contact> contacts(std::span<const SidedPoint> points, const Eigen::Isometry3d& base_from_part,
-                                  double gate, double least_cosine) const;
+                                  double gate, const Seeing& seeing) const;
 
 private:
     std::vector<Surfel> surfels_;
     double spacing_;
     SurfelGrid grid_;
+    Eigen::AlignedBox3d box_;
 };
 
 /// Point-to-plane least squares with Tukey's biweight, whose width shrinks from the surfels' spacing for as long as the
@@ -59,7 +78,7 @@ struct FrameFit {
 
 /// `least_scale_mm` keeps the width from collapsing on exact data. Empty contacts when nothing is near.
 FrameFit fit_to_surface(const TargetSurface& surface, std::span<const SidedPoint> points,
-                        const Eigen::Isometry3d& start, double first_gate, double least_scale_mm, double least_cosine,
+                        const Eigen::Isometry3d& start, double first_gate, double least_scale_mm, const Seeing& seeing,
                         double weak_ratio);
 
 /// Weight, and derivative of weight times residual, of Tukey's biweight at x = residual / half width.

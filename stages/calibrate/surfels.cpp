@@ -139,6 +139,7 @@ SidedCloud sided(const Scan& scan, const std::optional<Vector3d>& sensor_mm) {
     SidedCloud cloud;
     cloud.origin = scan.origin_mm;
     cloud.normals = normals;
+    cloud.sensor = sensor;
     cloud.points.reserve(order.size());
     cloud.sides.reserve(order.size());
     for (const std::uint32_t i : order) {

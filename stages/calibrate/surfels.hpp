@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,12 +13,17 @@
 /// Surfaces as pieces of quadrics, which a nominal mesh, a golden scan and a scan are all turned into.
 namespace seampath::calibrating {
 
+/// Directions, evenly over the sphere, 15 degrees apart.
+inline constexpr std::size_t kSights = 192;
+using Sights = std::bitset<kSights>;
+
 /// A piece of surface: near p its height over the tangent plane is d' K d / 2.
 struct Surfel {
-    Eigen::Vector3d p;  ///< mm
-    Eigen::Vector3d n;  ///< unit, out of the material
-    Eigen::Matrix3d K;  ///< 1/mm, symmetric, K n = 0
-    double rms = 0;     ///< mm, of the points about the quadric
+    Eigen::Vector3d p;               ///< mm
+    Eigen::Vector3d n;               ///< unit, out of the material
+    Eigen::Matrix3d K;               ///< 1/mm, symmetric, K n = 0
+    double rms = 0;                  ///< mm, of the points about the quadric
+    Sights sights = Sights().set();  ///< directions from which the rest of its surface does not hide it
     double distance(const Eigen::Vector3d& q) const {
         const Eigen::Vector3d d = q - p;
         return n.dot(d) - 0.5 * d.dot(K * d);
@@ -32,6 +38,7 @@ struct SidedCloud {
     std::vector<Eigen::Vector3f> sides;   ///< of each: unit, out of the material or towards the sensor
     bool normals = false;                 ///< `sides` are normals
     Eigen::Vector3d origin{0, 0, 0};
+    std::optional<Eigen::Vector3d> sensor;  ///< about where it stood, where the sides are not normals
     Eigen::Vector3d position(std::size_t i) const { return origin + points[i].cast<double>(); }
 };
 

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "datasets/fixture_draws.hpp"
 #include "stages/error.hpp"
+#include "stages/optics/optics.hpp"
 
 namespace seampath {
 namespace {
@@ -30,20 +32,22 @@ CaseResult over_seeds(std::uint64_t first, int sets, const F& f) {
             result.note = "seed " + std::to_string(seed);
         }
     }
-    result.rms_mm = std::sqrt(result.rms_mm / sets);
+    const double measured = std::max(1, result.measured);
+    result.rms_mm = std::sqrt(result.rms_mm / measured);
+    result.sigma_mm = std::sqrt(result.sigma_mm / measured);
     return result;
 }
 
-void add_error(CaseResult& result, const Isometry3d& found, const Isometry3d& truth, const Vector3d& at) {
-    const double error = (found * at - truth * at).norm();
+// What the frame found is off, against the truth and its own covariance.
+void measure(CaseResult& result, const FrameResult& found, const Isometry3d& truth, const Vector3d& at) {
+    const Vector6 d = displacement(found.base_from_part, truth);
+    const double error = (found.base_from_part * at - truth * at).norm();
+    ++result.measured;
     result.rms_mm += error * error;
+    result.sigma_mm += covariance_at(found.covariance, found.base_from_part, at).trace();
     result.largest_mm = std::max(result.largest_mm, error);
-    result.largest_rad = std::max(result.largest_rad, displacement(truth, found).tail<3>().norm());
-}
-
-bool in_region(const Isometry3d& found, const Isometry3d& truth, const Matrix6& covariance) {
-    const Vector6 d = displacement(found, truth);
-    return d.dot(covariance.ldlt().solve(d)) < kRegion95;
+    result.largest_rad = std::max(result.largest_rad, d.tail<3>().norm());
+    result.inside += d.dot(found.covariance.ldlt().solve(d)) < kRegion95;
 }
 
 struct SurfaceSet {
@@ -97,6 +101,21 @@ FrameResult ball_frame(const BallScene& scene, const FixtureScan& made) {
     return calibrate_frame(features, {}, options);
 }
 
+FrameResult touched_points_frame(const TouchedPart& part, Touched kind, const FrameOptions& options) {
+    std::vector<std::string> names;
+    std::vector<Vector3d> nominal, measured;
+    std::vector<FrameFeature> features;
+    for (std::size_t i = 0; i < part.points.size(); ++i) {
+        names.push_back("P" + std::to_string(i + 1));
+        nominal.push_back(part.points[i].nominal);
+        measured.push_back(part.points[i].measured);
+        features.push_back({names.back(), 0, false, {part.points[i]}, {}});
+    }
+    return kind == Touched::points ? calibrate_frame(features, {}, options)
+                                   : calibrate_frame(three_point_features(names, part.points), {}, options,
+                                                     rigid_through(nominal, measured));
+}
+
 }  // namespace
 
 CaseResult ball_case(std::uint64_t first, int sets) {
@@ -104,9 +123,47 @@ CaseResult ball_case(std::uint64_t first, int sets) {
         const BallScene scene;
         const FixtureScan made = make_ball_scan(scene, seed);
         const FrameResult r = ball_frame(scene, made);
-        add_error(result, r.base_from_part, made.base_from_part, {600, 0, 0});
-        result.inside += in_region(r.base_from_part, made.base_from_part, r.covariance);
+        measure(result, r, made.base_from_part, {600, 0, 0});
         result.good += r.features.size() == 4 && r.moved.empty();
+    });
+}
+
+CaseResult touched_case(Touched kind, std::uint64_t first, int sets) {
+    return over_seeds(first, sets, [kind](std::uint64_t seed, CaseResult& result) {
+        const TouchedPart part = make_touched_part(seed);
+        FrameOptions options;
+        options.trials = 1000;
+        const FrameResult r = kind == Touched::planes ? calibrate_planes(part.planes, {}, options)
+                                                      : touched_points_frame(part, kind, options);
+        measure(result, r, part.base_from_part, {600, 0, 0});
+        result.good += r.pass();
+    });
+}
+
+CaseResult board_case(std::uint64_t first, int sets) {
+    return over_seeds(first, sets, [](std::uint64_t seed, CaseResult& result) {
+        const SeenBoard made = make_seen_board(seed);
+        const BoardPlace place = locate_board(made.camera, {"board", made.points}, 0);
+        const std::vector<Vector3d> corners{{0, 0, 0}, {150, 0, 0}, {150, 105, 0}, {0, 105, 0}};
+        FrameOptions options;
+        options.trials = 1000;
+        const FrameResult r = calibrate_frame(
+            {{"board", 0, false, {}, {}, {{made.part_from_board, place.camera_from_board, place.covariance, corners}}}},
+            {}, options);
+        measure(result, r, made.camera_from_part, {300, 0, 0});
+        result.good += r.pass();
+    });
+}
+
+CaseResult seam_case(std::uint64_t first, int sets) {
+    return over_seeds(first, sets, [](std::uint64_t seed, CaseResult& result) {
+        const SeamScene scene;
+        const MeasuredSeams made = make_measured_seams(scene, seed);
+        FrameOptions options;
+        options.trials = 1000;
+        const FrameResult r = calibrate_seams(scene.seams, made.seams, {}, options);
+        measure(result, r, made.base_from_part, {400, 0, 0});
+        result.good += r.pass();
     });
 }
 
@@ -124,14 +181,49 @@ CaseResult surface_case(std::uint64_t first, int sets, int width) {
         const auto part = static_cast<FixturePart>(seed % kDefiniteParts);
         const SurfaceSet set = surface_set(part, seed, width);
         const Isometry3d &found = set.fit.frame.base_from_part, &truth = set.seen.made.base_from_part;
-        add_error(result, found, truth, set.middle);
+        measure(result, set.fit.frame, truth, set.middle);
         const Vector6 off = displacement(truth, found);
-        result.inside += in_region(found, truth, set.fit.frame.covariance);
         const bool near = (found * set.middle - truth * set.middle).norm() <= 0.02 &&
                           off.tail<3>().norm() <= 0.005 * std::numbers::pi / 180;
         result.good += near && set.fit.frame.pass();
         if (!near && set.fit.frame.pass()) {
             result.note = "seed " + std::to_string(seed) + " is wrong, and passed";
+        }
+    });
+}
+
+CaseResult golden_case(std::uint64_t first, int sets, int width) {
+    return over_seeds(first, sets, [&](std::uint64_t seed, CaseResult& result) {
+        SurfaceScene scene;
+        scene.part = static_cast<FixturePart>(seed % kFixturePartNames.size());
+        scene.width = width;
+        scene.height = static_cast<int>(0.735 * width);
+        const SurfaceScan seen = make_surface_scan(scene, seed);
+        const Scan nominal = golden_scan(make_surface_scan(scene, seed + 1000));
+        Eigen::AlignedBox3d box;
+        for (const Eigen::Vector3f& p : nominal.points) {
+            box.extend(p.cast<double>());
+        }
+        const Vector3d middle = box.center();
+        BestFitOptions options;
+        options.frame.trials = 1000;
+        Draws guess(seed, 977);
+        const Isometry3d& truth = seen.made.base_from_part;
+        options.near = truth * Eigen::Translation3d(middle + 20 * guess.direction()) *
+                       Eigen::AngleAxisd(guess.uniform(0, 0.5), guess.direction()) * Eigen::Translation3d(-middle);
+        const BestFit fit = calibrate_surface(seen.made.scan, nominal, {{"middle", middle}}, options);
+        if (!fit.frame.pass()) {
+            ++result.good;
+            return;
+        }
+        const Isometry3d& found = fit.frame.base_from_part;
+        measure(result, fit.frame, truth, middle);
+        const Vector6 off = displacement(truth, found);
+        const bool near =
+            (found * middle - truth * middle).norm() <= 0.1 && off.tail<3>().norm() <= 0.05 * std::numbers::pi / 180;
+        result.good += near;
+        if (!near) {
+            result.note += (result.note.empty() ? "wrong, and passed: seed " : ", ") + std::to_string(seed);
         }
     });
 }

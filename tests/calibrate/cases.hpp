@@ -12,16 +12,29 @@ namespace seampath {
 /// One case over seeds.
 struct CaseResult {
     int sets = 0;
-    double rms_mm = 0;  ///< at the case's far point
+    int measured = 0;     ///< of them, those that gave a frame to hold against the truth
+    double rms_mm = 0;    ///< of those, at the case's far point
+    double sigma_mm = 0;  ///< the same by their covariances
     double largest_mm = 0;
     double largest_rad = 0;
-    int inside = 0;    ///< sets whose truth lies in the 95 % region of the covariance
+    int inside = 0;    ///< measured sets whose truth lies in the 95 % region of the covariance
     int good = 0;      ///< sets within the case's limits, or named as asked
     std::string note;  ///< what went wrong first
 };
 
 /// Four balls of 12.7 mm over 400 mm among clutter: error at a point 1.5 bases away.
 CaseResult ball_case(std::uint64_t first_seed, int sets);
+
+/// Touched points with their noise, on the points and datum planes of one part; far point as above. Good when it
+/// passes.
+enum class Touched { points, three_points, planes };
+CaseResult touched_case(Touched kind, std::uint64_t first_seed, int sets);
+
+/// Points on three seams, in any pose, with noise across them.
+CaseResult seam_case(std::uint64_t first_seed, int sets);
+
+/// Corners of one board before a camera, 0.1 px of noise; far point 300 mm from it.
+CaseResult board_case(std::uint64_t first_seed, int sets);
 
 /// One of them moved by 0.2 mm: good when it alone is named.
 CaseResult moved_ball_case(std::uint64_t first_seed, int sets);
@@ -33,5 +46,9 @@ CaseResult surface_case(std::uint64_t first_seed, int sets, int width = 640);
 
 /// The same of parts with an open direction or several poses that look alike. Good when refused, and the reason named.
 CaseResult open_surface_case(std::uint64_t first_seed, int sets, int width = 640);
+
+/// A scan laid on a golden one: the same part, any of all, seen from another place, known to within 20 mm and 30
+/// degrees. Good within 0.1 mm at the part's middle and 0.05 degrees, or refused; those not refused are measured.
+CaseResult golden_case(std::uint64_t first_seed, int sets, int width = 640);
 
 }  // namespace seampath

@@ -23,10 +23,27 @@ TEST(FixtureCases, TheBallThatMovedIsNamed) {
     EXPECT_EQ(moved_ball_case(1, 4).good, 4);
 }
 
+// Errors are as large as the covariance says, which is that of the measurements' own noise.
+TEST(FixtureCases, TouchedPointsPlanesAndBoardsReachTheNoisesOwnLimit) {
+    constexpr int kSets = 40;
+    for (const CaseResult& r : {touched_case(Touched::points, 1, kSets), touched_case(Touched::three_points, 1, kSets),
+                                touched_case(Touched::planes, 1, kSets), board_case(1, kSets)}) {
+        EXPECT_EQ(r.good, kSets) << r.note;
+        EXPECT_NEAR(r.rms_mm / r.sigma_mm, 1, 0.25);
+        EXPECT_GE(r.inside, 34);  // of 40 with 95 % each, fewer come once in 100
+    }
+}
+
 TEST(FixtureCases, AScanIsLaidOnAMeshWithoutAGuess) {
     const CaseResult r = surface_case(1, 1, 320);
     EXPECT_EQ(r.good, 1) << r.note;
     EXPECT_LE(r.largest_mm, 0.02);
+}
+
+TEST(FixtureCases, OnAGoldenScanAFrameIsRightOrRefused) {
+    const CaseResult r = golden_case(1, 2, 256);
+    EXPECT_EQ(r.good, 2) << r.note;
+    EXPECT_GE(r.measured, 1);
 }
 
 TEST(FixtureCases, PartsWithoutAPoseOfTheirOwnAreRefusedByName) {

@@ -6,6 +6,7 @@
 
 #include "pipeline/fixture_calibration.hpp"
 #include "tests/cli/spawn.hpp"
+#include "tests/report/page.hpp"
 
 /// The program as a user calls it.
 namespace seampath {
@@ -51,6 +52,10 @@ TEST_F(FixtureCli, WritesResultFramesAndHistory) {
                              "yaskawa/UFRAME.CND", "json/frame.json", "urdf/frame.urdf"}) {
         EXPECT_TRUE(fs::exists(out / "frames" / file)) << file;
     }
+    const std::string page = text_of(out / "report.html");
+    EXPECT_TRUE(test::holds(page, "data-verdict=\"pass\""));
+    EXPECT_GE(test::expect_numbers_equal(page, json), 4 * 5 + 4);
+    EXPECT_FALSE(test::holds(page, "http://") || test::holds(page, "src=\"")) << "it needs a network";
     const StoredFixture stored = read_fixture_result(out / "result.json");
     EXPECT_TRUE(stored.pass);
     EXPECT_FALSE(stored.accepted);
@@ -100,6 +105,42 @@ TEST_F(FixtureCli, StudyCountsRepeatsAndDrift) {
     const Outcome study = seampath_program({"calibrate", "study", out, "--limit", "0.5"});
     EXPECT_EQ(study.status, 1);
     EXPECT_THAT(study.out, AllOf(HasSubstr("8 runs"), HasSubstr("ALARM: nozzle, x drifts by 0.020")));
+}
+
+// The jig is shifted by 1000 mm along x; what the points are unsure of joins the waypoints' own sigma.
+TEST_F(FixtureCli, TheProgramOfARunMovesWithTheFixture) {
+    ASSERT_EQ(calibrate().status, 0);
+    const auto waypoints = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> words{"--robot", "json,abb"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = seampath_program(run_small_tee(folder.path() / name, words));
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(text_of(folder.path() / name / "programs/json/waypoints.json")).at("waypoints");
+    };
+    const std::vector<std::string> placed{"--fixture", out / "result.json"};
+    const auto loose = waypoints("loose", {}), moved = waypoints("moved", placed);
+    ASSERT_EQ(loose.size(), moved.size());
+    for (std::size_t i = 0; i < loose.size(); ++i) {
+        EXPECT_NEAR(moved[i].at("x").get<double>() - loose[i].at("x").get<double>(), 1000, 2e-3);
+        EXPECT_NEAR(moved[i].at("y").get<double>(), loose[i].at("y").get<double>(), 2e-3);
+        if (loose[i].at("kind") == "weld") {
+            EXPECT_GT(moved[i].at("sigma_mm").get<double>(), loose[i].at("sigma_mm").get<double>());
+        }
+    }
+    std::string program;
+    for (const auto& [name, text] : contents(folder.path() / "moved/programs/abb")) {
+        program += text;
+    }
+    EXPECT_THAT(program, HasSubstr("1-sigma of base_from_scan"));
+    const Outcome old = seampath_program(run_small_tee(
+        folder.path() / "old", {"--fixture", out / "result.json", "--set", "plan.fixture_max_age_h=0.001"}));
+    EXPECT_EQ(old.status, 2);
+    EXPECT_THAT(old.err, HasSubstr("plan.fixture_max_age_h"));
+    shift_all("P1,1000,0,40\nP2,1400,0,70\nP3,1370,290,45.3\nP4,1040,240,130\n");
+    ASSERT_EQ(calibrate().status, 1);
+    const Outcome failed = seampath_program(run_small_tee(folder.path() / "failed", placed));
+    EXPECT_EQ(failed.status, 2);
+    EXPECT_THAT(failed.err, HasSubstr("did not pass"));
 }
 
 TEST_F(FixtureCli, BadInputIsOneClearLineEach) {

@@ -92,6 +92,44 @@ TEST(CalibrateFrame, CovarianceIsWhatRepeatedMeasurementsShow) {
     EXPECT_LE(inside, 0.97 * kSets);
 }
 
+FrameFeature board(const std::string& name, const Isometry3d& nominal, const Isometry3d& T, const Matrix6& covariance) {
+    return {name, 0, false, {}, {}, {{nominal, T * nominal, covariance, {{0, 0, 0}, {150, 0, 0}, {0, 105, 0}}}}};
+}
+
+// One pose leaves no choice: the frame is the measured pose, and its covariance that of the pose about the part's
+// origin, by the change of reference alone. A second like it halves the covariance.
+TEST(CalibrateFrame, APoseGivesItsFrameAndItsCovariance) {
+    Isometry3d nominal = Isometry3d::Identity();
+    nominal.linear() = turn_by({0.2, 0.1, -0.4}).toRotationMatrix();
+    nominal.translation() = Vector3d(300, 40, -20);
+    Matrix6 C = Matrix6::Zero();
+    C.diagonal() << 1e-4, 2e-4, 9e-4, 4e-8, 5e-8, 1e-8;
+    C(0, 4) = C(4, 0) = 1e-6;
+    const Isometry3d T = some_pose();
+    const FrameResult r = calibrate_frame({board("A", nominal, T, C)}, {}, {});
+    EXPECT_LT(displacement(T, r.base_from_part).norm(), 1e-9);
+    EXPECT_TRUE(r.pass()) << r.faults[0];
+    const Matrix6 J = change_of_reference((T * nominal).translation(), T.translation());
+    EXPECT_LT((r.covariance - J * C * J.transpose()).norm(), 1e-9 * r.covariance.norm());
+    const FrameResult two = calibrate_frame({board("A", nominal, T, C), board("B", nominal, T, C)}, {}, {});
+    EXPECT_LT((two.covariance - r.covariance / 2).norm(), 1e-9 * r.covariance.norm());
+    EXPECT_EQ(two.redundancy, 6);
+}
+
+TEST(CalibrateFrame, TheBoardThatMovedIsNamed) {
+    Matrix6 C = Matrix6::Zero();
+    C.diagonal() << 1e-4, 1e-4, 1e-4, 1e-8, 1e-8, 1e-8;
+    std::vector<FrameFeature> boards;
+    for (int i = 0; i < 3; ++i) {
+        boards.push_back(
+            board("B" + std::to_string(i), Isometry3d(Eigen::Translation3d(200 * i, 30 * i * i, 0)), some_pose(), C));
+    }
+    boards[2].poses[0].measured.translation() += Vector3d(0, 0.3, 0);
+    const FrameResult r = calibrate_frame(boards, {}, {});
+    EXPECT_FALSE(r.pass());
+    EXPECT_THAT(r.moved, ElementsAre("B2"));
+}
+
 TEST(CalibrateFrame, OrderChangesNothing) {
     auto features = points(kFour, some_pose(), 0.02, 7);
     const FrameResult a = calibrate_frame(features, kWork, {});
