@@ -91,7 +91,7 @@ class MeanProfile {
 public:
     MeanProfile(const GreyImage& image, const std::vector<TrackPlace>& track, std::size_t middle)
         : reach_(static_cast<int>(std::lround(3 * track[middle].width)) + 6),
-          value_(static_cast<std::size_t>(2 * reach_ + 1), 0) {
+          value_(2 * static_cast<std::size_t>(reach_) + 1, 0) {
         constexpr std::size_t kPlaces = 30;  // to either side
         const LineKind kind = track[middle].kind;
         const double sign = kind == LineKind::bright ? 1 : -1;
@@ -101,14 +101,13 @@ public:
             places_ += counts ? 1 : 0;
             const int column = static_cast<int>(i) * kTrackStep, row = static_cast<int>(std::lround(track[i].y));
             for (int u = -reach_; counts && u <= reach_; ++u) {
-                value_[static_cast<std::size_t>(u + reach_)] +=
-                    sign * static_cast<double>(image.clamped(column, row + u));
+                value_.begin()[u + reach_] += sign * static_cast<double>(image.clamped(column, row + u));
             }
         }
     }
 
     int reach() const { return reach_; }
-    double at(int u) const { return value_[static_cast<std::size_t>(u + reach_)] / std::max(1, places_); }
+    double at(int u) const { return value_.begin()[u + reach_] / std::max(1, places_); }
     double mean(int begin, int end) const {
         double sum = 0;
         for (int u = begin; u <= end; ++u) {

@@ -16,6 +16,11 @@ namespace seampath {
 namespace {
 
 constexpr int kNotStarted = 127;
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kLimitsMemory = false;  // AddressSanitizer reserves terabytes to begin with
+#else
+constexpr bool kLimitsMemory = true;
+#endif
 
 void limit(int resource, rlim_t most) {
     const rlimit held{most, most};
@@ -44,7 +49,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::fil
     // From here on only what is safe between fork and exec.
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // a suite that is killed leaves no process behind
     limit(RLIMIT_CORE, 0);
-    if (memory_mb > 0) {
+    if (kLimitsMemory && memory_mb > 0) {
         limit(RLIMIT_DATA, static_cast<rlim_t>(memory_mb * 1024 * 1024));
     }
     const int out = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
