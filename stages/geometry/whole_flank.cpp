@@ -182,8 +182,8 @@ WholeFlank shrunk(std::span<const FlankPlace> places, const FlankPool& pool, std
 
 // Whether the windows' own surfaces lie off this one by more than both are unsure of. Windows know of the noise of
 // points, but not that each mixes the views in its own way, which views off each other turn into more: windows side by
-// side tell by how much.
-bool contradicted(std::span<const FlankPlace> places, std::size_t reach, const WholeFlank& whole) {
+// side, `mixed_reach` places to each side, tell by how much.
+bool contradicted(std::span<const FlankPlace> places, const WholeFlank& whole, std::optional<std::size_t> mixed_reach) {
     constexpr double kMost = 2;  // robust 1-sigma of the differences, in their own sigmas
     std::vector<std::optional<Departure>> off(places.size());
     std::vector<double> squares;
@@ -194,7 +194,8 @@ bool contradicted(std::span<const FlankPlace> places, std::size_t reach, const W
             squares.push_back(off[i]->value * off[i]->value / off[i]->variance);
         }
     }
-    return quantile(squares, 0.5) > kMost * kMost * kMedianSquare * std::max(1.0, noise_share(off, 2 * reach + 1));
+    const double mixing = mixed_reach ? std::max(1.0, noise_share(off, 2 * *mixed_reach + 1)) : 1;
+    return quantile(squares, 0.5) > kMost * kMost * kMedianSquare * mixing;
 }
 
 }  // namespace
@@ -216,7 +217,8 @@ FlankFit fit_whole_flank(std::span<const FlankPlace> places, const FlankPool& po
             continue;
         }
         WholeFlank whole = shrunk(places, pool, rules.reach, *surface);
-        if ((!best.whole || whole.variance < best.whole->variance) && !contradicted(places, pool.reach, whole)) {
+        if ((!best.whole || whole.variance < best.whole->variance) &&
+            !contradicted(places, whole, rules.mixes_views ? std::optional(pool.reach) : std::nullopt)) {
             best.nearest = surface;
             best.whole = std::move(whole);
         }

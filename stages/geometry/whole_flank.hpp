@@ -36,6 +36,7 @@ struct WholeFlankRules {
     std::size_t reach = 1;           ///< places to each side whose points tell a departure
     double least_scale = 0;          ///< mm, as for fit_plane()
     std::size_t least_points = 100;  ///< of the pool
+    bool mixes_views = false;        ///< windows mix points of views that lie off each other
 };
 
 /// Fits a plane and a cylinder to all points of the pool. Where one explains them, what each place departs from it is

@@ -61,7 +61,10 @@ std::optional<WholeFlank> whole_flank(const Course& course, const std::vector<Wi
     if (pool.points.empty()) {
         return std::nullopt;
     }
-    return fit_whole_flank(places, pool, {reach_of(pool, places.size()), 0.3 * noise_of(scale), kLeastPoints}).whole;
+    return fit_whole_flank(
+               places, pool,
+               {reach_of(pool, places.size()), 0.3 * noise_of(scale), kLeastPoints, course.ground.views.size() > 1})
+        .whole;
 }
 
 // The flank as a whole, when it is one. Points of samples whose own windows see too little are added when the rest of
