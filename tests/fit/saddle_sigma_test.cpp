@@ -22,7 +22,7 @@ struct Tally {
 };
 
 TEST(SaddleSigma, HoldsForEveryParameterOverManyScans) {
-    constexpr std::uint64_t kScans = 36;
+    constexpr std::uint64_t kScans = SEAMPATH_SLOWDOWN > 1 ? 4 : 36;
     Tally tally;
     for (const std::optional<double> header : {std::optional<double>(), std::optional(30.0)}) {
         for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
@@ -44,6 +44,8 @@ TEST(SaddleSigma, HoldsForEveryParameterOverManyScans) {
             }
         }
     }
+    if (SEAMPATH_SLOWDOWN > 1)
+        GTEST_SKIP() << "ran, but shares need more scans than instrumented code has time for";
     EXPECT_GT(tally.one, 0.60 * tally.all);
     EXPECT_LT(tally.one, 0.76 * tally.all);
     EXPECT_GT(tally.two, 0.92 * tally.all);
