@@ -139,7 +139,7 @@ DepthMap::DepthMap(const SidedCloud& scan, double point_spacing) {
         const Vector3d ray = scan.position(i) - sensor_;
         if (const auto at = pixel_of(ray)) {
             const Array2i cell = *at - low_;
-            float& depth = nearest_[static_cast<std::size_t>(cell.y() * size_.x() + cell.x())];
+            float& depth = nearest_[index_of(cell)];
             depth = std::min(depth, static_cast<float>(ray.norm()));
         }
     }
@@ -152,6 +152,11 @@ std::optional<Array2i> DepthMap::pixel_of(const Vector3d& ray) const {
     }
     return Array2i(static_cast<int>(std::floor(r.x() / r.z() / pixel_)),
                    static_cast<int>(std::floor(r.y() / r.z() / pixel_)));
+}
+
+std::size_t DepthMap::index_of(const Array2i& pixel) const {
+    return static_cast<std::size_t>(pixel.y()) * static_cast<std::size_t>(size_.x()) +
+           static_cast<std::size_t>(pixel.x());
 }
 
 bool DepthMap::sees_past(const Vector3d& p, double tolerance) const {
@@ -168,7 +173,7 @@ bool DepthMap::sees_past(const Vector3d& p, double tolerance) const {
             if ((cell < 0).any() || (cell >= size_).any()) {
                 continue;
             }
-            const float depth = nearest_[static_cast<std::size_t>(cell.y() * size_.x() + cell.x())];
+            const float depth = nearest_[index_of(cell)];
             if (depth < least) {
                 return false;
             }

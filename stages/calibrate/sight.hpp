@@ -30,6 +30,7 @@ public:
 
 private:
     std::optional<Eigen::Array2i> pixel_of(const Eigen::Vector3d& ray) const;
+    std::size_t index_of(const Eigen::Array2i& pixel) const;  ///< from the lowest one, into nearest_
 
     Eigen::Vector3d sensor_;
     Eigen::Matrix3d axes_;  ///< columns; the last looks ahead

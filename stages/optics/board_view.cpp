@@ -160,7 +160,7 @@ BoardPlace locate_plane(const CameraModel& camera, const BoardView& points) {
     if (!(variances[0] > kThinnest * kThinnest * variances[1])) {
         throw InputError(who + "the points of the plane lie on one line; take them from the corners of an area");
     }
-    const BoardPlace place =
+    BoardPlace place =
         optics::refined_place(camera, points, optics::first_place(camera, points), 0, kReading * kReading);
     if (!(place.rms_px <= kMostOff * camera.width)) {
         throw InputError(who + "the points of the plane are " + fixed(place.rms_px, 1) +

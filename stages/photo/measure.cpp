@@ -121,9 +121,9 @@ std::vector<PhotoPoint> points_of(const MeasuredLine& line) {
     const auto& stretches = line.stretches;
     std::vector<double> sigmas;
     std::vector<std::size_t> sound;
-    for (std::size_t i = 0; i < stretches.size(); ++i) {
-        if (stretches[i].measured) {
-            sigmas.push_back(stretches[i].sigma);
+    for (const auto& stretch : stretches) {
+        if (stretch.measured) {
+            sigmas.push_back(stretch.sigma);
         }
     }
     const double one = std::max(line.smooth.scatter, quantile(sigmas, 0.5));

@@ -99,8 +99,10 @@ TEST(Picture, SurvivesDamage) {
 
 TEST(Picture, PhotographsAreReadAsTheirBrightness) {
     GreyImage image{32, 24, 255, {}};
-    for (int i = 0; i < 32 * 24; ++i) {
-        image.value.push_back(static_cast<float>(40 + 3 * (i % 32) + 2 * (i / 32)));
+    for (int y = 0; y < 24; ++y) {
+        for (int x = 0; x < 32; ++x) {
+            image.value.push_back(static_cast<float>(40 + 3 * x + 2 * y));
+        }
     }
     const std::string jpeg = jpeg_bytes(image);
     const GreyImage read = decode_photograph(jpeg, "photo");

@@ -77,8 +77,8 @@ TEST(TorchShape, DistanceIsToTheNearestPointOfTheSurface) {
         const double c = std::cos(turn), s = std::sin(turn);
         for (double share = 0; share <= 1; share += 1.0 / 80) {
             const double r = 7.5 + 5 * share;
-            surface.push_back({r * c, r * s, -15 - 60 * share});
-            surface.push_back({7.5 * share * c, 7.5 * share * s, -15});
+            surface.emplace_back(r * c, r * s, -15 - 60 * share);
+            surface.emplace_back(7.5 * share * c, 7.5 * share * s, -15);
             for (double t = 0; t < 1.5; t += 0.5) {  // three rows, for the body is twice as long
                 surface.push_back(joint + std::min(120.0, 120 * share + t) * along + 20 * (c * side + s * other));
             }
