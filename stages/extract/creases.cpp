@@ -211,7 +211,7 @@ std::optional<Crease> as_crease(const Surfels& surfels, std::span<const std::uin
     crease.n2 = normal[1];
     crease.t = t;
     crease.piece = centre.piece;
-    crease.decided = centre.decided;
+    crease.side = centre.side;
     crease.weight = n - static_cast<double>(split.unexplained);
     return crease;
 }

@@ -17,8 +17,8 @@ struct Crease {
     Eigen::Vector3d n2;
     double weight = 0;  ///< surfels explained
     bool concave = false;
-    std::uint32_t piece = 0;  ///< of the scan, see Surfel
-    bool decided = true;      ///< whether `concave` is known; otherwise the normals may be the other way round
+    std::uint32_t piece = 0;        ///< of the scan, see Surfel
+    AirSide side = AirSide::known;  ///< how sure `concave` is; it may be that the normals are the other way round
 };
 
 /// Robust two-plane fits at every surfel that is not flat, in the order of the surfels.

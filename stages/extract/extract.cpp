@@ -41,19 +41,24 @@ double cell_size(const ScanScale& scale, std::size_t points) {
 }
 
 // Where nothing told the air from the material of a piece, its joints do: a scan made to find a seam shows more of the
-// joints that are asked for than of other edges.
-void tell_sides(std::vector<Crease>& creases, bool joints_are_convex) {
+// joints that are asked for than of other edges. Who asks for convex ones knows better than an assumption, too. Returns
+// whether one was given up.
+bool tell_sides(std::vector<Crease>& creases, bool joints_are_convex) {
     std::map<std::uint32_t, double> balance;
     for (const Crease& c : creases) {
         balance[c.piece] += c.concave != joints_are_convex ? c.weight : -c.weight;
     }
+    bool given_up = false;
     for (Crease& c : creases) {
-        if (!c.decided && balance[c.piece] < 0) {
+        const bool open = c.side == AirSide::unknown || (c.side == AirSide::assumed && joints_are_convex);
+        if (open && balance[c.piece] < 0) {
             c.concave = !c.concave;
             c.n1 = -c.n1;
             c.n2 = -c.n2;
+            given_up = given_up || c.side == AirSide::assumed;
         }
     }
+    return given_up;
 }
 
 bool asked(const ExtractOptions& options, JointChoice kind) {
@@ -190,7 +195,9 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
     orient(surfels, grid, scan);
     result.orientation_reason = surfels.orientation_reason;
     std::vector<Crease> creases = find_creases(surfels, field);
-    tell_sides(creases, options.joint == JointChoice::corner);
+    if (tell_sides(creases, options.joint == JointChoice::corner)) {
+        result.orientation_reason = "air side is the one to which most edges are convex, since corners were asked for";
+    }
 
     // An organised cloud is one view.
     const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};

@@ -1,7 +1,9 @@
 #include "stages/extract/main_plane.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Dense>
 
@@ -10,6 +12,14 @@
 
 namespace seampath::detail {
 namespace {
+
+// All of a scan, or a piece of it.
+struct Scope {
+    const Surfels& surfels;
+    const PointGrid& grid;
+    std::optional<std::uint32_t> piece;
+    bool holds(const Surfel& s) const { return !piece || s.piece == *piece; }
+};
 
 // The plane that holds most surfels: the plate that the part is, or the table that it lies on.
 struct MainPlane {
@@ -20,16 +30,22 @@ struct MainPlane {
     }
 };
 
-MainPlane main_plane(const Surfels& surfels, double reach) {
+MainPlane main_plane(const Scope& scope, double reach) {
     constexpr std::size_t kCandidates = 120;
-    std::vector<MainPlane> planes(std::min(kCandidates, surfels.at.size()));
-    parallel_for(planes.size(), 4, [&](std::size_t k) {
-        const Surfel& s = surfels.at[(2 * k + 1) * surfels.at.size() / (2 * planes.size())];
-        MainPlane plane{s.n, s.n.dot(s.p), 0};
-        for (const Surfel& q : surfels.at) {
-            plane.share += plane.holds(q, reach);
+    std::vector<const Surfel*> within;
+    for (const Surfel& s : scope.surfels.at) {
+        if (scope.holds(s)) {
+            within.push_back(&s);
         }
-        plane.share /= static_cast<double>(surfels.at.size());
+    }
+    std::vector<MainPlane> planes(std::min(kCandidates, within.size()));
+    parallel_for(planes.size(), 4, [&](std::size_t k) {
+        const Surfel& s = *within[(2 * k + 1) * within.size() / (2 * planes.size())];
+        MainPlane plane{s.n, s.n.dot(s.p), 0};
+        for (const Surfel* q : within) {
+            plane.share += plane.holds(*q, reach);
+        }
+        plane.share /= static_cast<double>(within.size());
         planes[k] = plane;
     });
     return *std::max_element(planes.begin(), planes.end(),
@@ -40,6 +56,8 @@ MainPlane main_plane(const Surfels& surfels, double reach) {
 struct Walls {
     double along_outline = 0, inside = 0;  // surfels at their feet
     double height = 0;                     // of those along the outline, mm
+    bool at_outline = false;               // most of them
+    bool opposite = false;                 // on opposite sides of it
     bool are_edges = false;                // the plane's own
 };
 
@@ -75,6 +93,22 @@ bool goes_on_behind(const Surfels& surfels, const PointGrid& grid, const MainPla
     return seen >= 3;
 }
 
+// Whether many of these directions have many that are opposite to them.
+bool any_opposite(const std::vector<Eigen::Vector3d>& directions) {
+    constexpr double kMany = 0.1;
+    const auto alike = [&](const Eigen::Vector3d& d) {
+        return static_cast<double>(std::count_if(directions.begin(), directions.end(), [&](const Eigen::Vector3d& e) {
+                   return d.dot(e) > 0.85;
+               })) > kMany * static_cast<double>(directions.size());
+    };
+    for (std::size_t i = 0; i < directions.size(); i += 1 + directions.size() / 50) {
+        if (alike(directions[i]) && alike(-directions[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Across the shorter way, of the rectangle that spreads as these points of a plane do.
 double width_of(const std::vector<Eigen::Vector3d>& members) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -90,14 +124,18 @@ double width_of(const std::vector<Eigen::Vector3d>& members) {
 }
 
 // The walls on the side of the plane's normal.
-Walls walls_on(const Surfels& surfels, const PointGrid& grid, const MainPlane& plane) {
+Walls walls_on(const Scope& scope, const MainPlane& plane) {
     constexpr double kLow = 0.2;  // of the plane's width; a higher wall may be a part of its own
+    const auto& [surfels, grid, piece] = scope;
     const double cell = grid.cell(), reach = 400 * cell;
     Walls walls;
     std::vector<double> heights;
-    std::vector<Eigen::Vector3d> members;
+    std::vector<Eigen::Vector3d> members, outwards;
     for (std::size_t i = 0; i < surfels.at.size(); ++i) {
         const Surfel& s = surfels.at[i];
+        if (!scope.holds(s)) {
+            continue;
+        }
         const double height = plane.n.dot(s.p) - plane.d;
         if (plane.holds(s, cell)) {
             members.push_back(s.p);
@@ -116,16 +154,72 @@ Walls walls_on(const Surfels& surfels, const PointGrid& grid, const MainPlane& p
         if (towards.norm() < cell) {
             continue;
         }
-        if (goes_on_behind(surfels, grid, plane, s.p, -towards.normalized(), reach)) {
+        const Eigen::Vector3d out = -towards.normalized();
+        if (goes_on_behind(surfels, grid, plane, s.p, out, reach)) {
             walls.inside += 1;
         } else {
             walls.along_outline += 1;
+            outwards.push_back(out);
             heights.push_back(height_of_wall(surfels, grid, s, plane.n, reach) + height);
         }
     }
     walls.height = quantile(heights, 0.5);
-    walls.are_edges = walls.along_outline > walls.inside && walls.height < kLow * width_of(members);
+    walls.at_outline = walls.along_outline > walls.inside;
+    walls.opposite = any_opposite(outwards);
+    walls.are_edges = walls.at_outline && (walls.opposite || walls.height < kLow * width_of(members));
     return walls;
+}
+
+// Turns the normals of the scope, see turn_to_side_of_main_plane; adds the pieces that had a share in the plane.
+std::optional<std::string> turn(Surfels& surfels, const Scope& scope, std::vector<char>& turned) {
+    const double cell = scope.grid.cell();
+    constexpr double kMain = 0.25, kOneSide = 0.85;
+    MainPlane plane = main_plane(scope, cell);
+    double above = 0, below = 0;
+    for (const Surfel& s : surfels.at) {
+        const double height = plane.n.dot(s.p) - plane.d;
+        above += scope.holds(s) && height > 3 * cell;
+        below += scope.holds(s) && height < -3 * cell;
+    }
+    if (plane.share < kMain || above + below == 0 || std::max(above, below) < kOneSide * (above + below)) {
+        return std::nullopt;
+    }
+    if (below > above) {
+        plane.n = -plane.n;
+        plane.d = -plane.d;
+    }
+    // The other face of a plate lies behind all of it; what stands on a plate, before a part of it.
+    std::size_t members = 0, covered = 0;
+    for (std::size_t i = 0; i < surfels.at.size(); i += 7) {
+        if (scope.holds(surfels.at[i]) && plane.holds(surfels.at[i], cell)) {
+            ++members;
+            covered += blocked(scope.grid, surfels.at[i].p, plane.n, 2 * cell, 400 * cell);
+        }
+    }
+    if (2 * covered > members) {
+        return std::nullopt;
+    }
+    const Walls walls = walls_on(scope, plane);
+    if (scope.piece && !walls.are_edges) {
+        return std::nullopt;  // what a piece alone shows beside its largest face may as well be its other faces
+    }
+    std::vector<double> sum(surfels.at.size(), 0);
+    for (const Surfel& s : surfels.at) {
+        if (scope.holds(s) && plane.holds(s, cell)) {
+            sum[s.piece] += (walls.are_edges ? -1 : 1) * s.n.dot(plane.n);
+        }
+    }
+    for (Surfel& s : surfels.at) {
+        if (sum[s.piece] != 0) {
+            s.side = walls.at_outline ? AirSide::assumed : AirSide::known;
+            turned[s.piece] = 1;
+        }
+        if (sum[s.piece] < 0) {
+            s.n = -s.n;
+        }
+    }
+    return walls.are_edges ? "air side of the main plane is the one to which its outline has no edges"
+                           : "air side is the side of the main plane on which the rest of the scan lies";
 }
 
 }  // namespace
@@ -145,49 +239,19 @@ bool blocked(const PointGrid& grid, const Eigen::Vector3d& p, const Eigen::Vecto
 }
 
 std::optional<std::string> turn_to_side_of_main_plane(Surfels& surfels, const PointGrid& grid) {
-    const double cell = grid.cell();
-    constexpr double kMain = 0.25, kOneSide = 0.85;
-    MainPlane plane = main_plane(surfels, cell);
-    double above = 0, below = 0;
+    constexpr double kPiece = 0.05;  // of the scan; smaller ones are left
+    std::vector<char> turned(surfels.at.size(), 0);
+    const auto reason = turn(surfels, {surfels, grid, std::nullopt}, turned);
+    std::vector<std::size_t> size(surfels.at.size(), 0);
     for (const Surfel& s : surfels.at) {
-        const double height = plane.n.dot(s.p) - plane.d;
-        above += height > 3 * cell;
-        below += height < -3 * cell;
+        ++size[s.piece];
     }
-    if (plane.share < kMain || above + below == 0 || std::max(above, below) < kOneSide * (above + below)) {
-        return std::nullopt;
-    }
-    if (below > above) {
-        plane.n = -plane.n;
-        plane.d = -plane.d;
-    }
-    // The other face of a plate lies behind all of it; what stands on a plate, before a part of it.
-    std::size_t members = 0, covered = 0;
-    for (std::size_t i = 0; i < surfels.at.size(); i += 7) {
-        if (plane.holds(surfels.at[i], grid.cell())) {
-            ++members;
-            covered += blocked(grid, surfels.at[i].p, plane.n, 2 * grid.cell(), 400 * grid.cell());
+    for (std::uint32_t piece = 0; reason && piece < size.size(); ++piece) {
+        if (!turned[piece] && static_cast<double>(size[piece]) > kPiece * static_cast<double>(surfels.at.size())) {
+            turn(surfels, {surfels, grid, piece}, turned);
         }
     }
-    if (2 * covered > members) {
-        return std::nullopt;
-    }
-    const bool edges = walls_on(surfels, grid, plane).are_edges;
-    const double air = edges ? -1 : 1;
-    std::vector<double> sum(surfels.at.size(), 0);
-    for (const Surfel& s : surfels.at) {
-        if (plane.holds(s, cell)) {
-            sum[s.piece] += air * s.n.dot(plane.n);
-        }
-    }
-    for (Surfel& s : surfels.at) {
-        s.decided = s.decided || sum[s.piece] != 0;
-        if (sum[s.piece] < 0) {
-            s.n = -s.n;
-        }
-    }
-    return edges ? "air side of the main plane is the one to which its outline has no edges"
-                 : "air side is the side of the main plane on which the rest of the scan lies";
+    return reason;
 }
 
 }  // namespace seampath::detail

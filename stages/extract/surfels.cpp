@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "stages/extract/consistent.hpp"
 #include "stages/extract/main_plane.hpp"
 #include "stages/geometry/parallel.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kLeastNeighbours = 6;
 constexpr double kClear = 0.15;  // share of deciding rays that leaves no doubt; strays over a table decide fewer
+constexpr double kHint = 0.02;   // share that still tells something
 constexpr double kTouch = 1.8;   // cells; means of cells that share a corner are mostly nearer
 
 void fit_surfel(Surfel& surfel, std::span<const std::uint32_t> neighbours, const std::vector<Surfel>& all) {
@@ -68,51 +70,6 @@ void collect_neighbours(const Surfels& surfels, std::uint32_t i, std::vector<std
     }
 }
 
-struct Link {
-    float cost;
-    std::uint32_t a, b;
-    bool operator<(const Link& o) const { return std::tie(cost, a, b) < std::tie(o.cost, o.a, o.b); }
-};
-
-// Disjoint sets in which each element knows whether its normal is turned against that of its set's root.
-class TurnedSets {
-public:
-    explicit TurnedSets(std::size_t n) : parent_(n), turned_(n, 0) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    std::pair<std::uint32_t, bool> find(std::uint32_t i) {
-        std::uint32_t root = i;
-        bool turned = false;
-        while (parent_[root] != root) {
-            turned ^= turned_[root] != 0;
-            root = parent_[root];
-        }
-        bool rest = turned;
-        while (parent_[i] != root && i != root) {
-            const std::uint32_t up = parent_[i];
-            const bool own = turned_[i] != 0;
-            parent_[i] = root;
-            turned_[i] = rest;
-            rest ^= own;
-            i = up;
-        }
-        return {root, turned};
-    }
-    void join(std::uint32_t a, std::uint32_t b, bool opposite) {
-        auto [ra, ta] = find(a);
-        auto [rb, tb] = find(b);
-        if (ra != rb) {
-            if (ra > rb) {
-                std::swap(ra, rb);
-            }
-            parent_[rb] = ra;
-            turned_[rb] = (ta != tb) != opposite;
-        }
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-    std::vector<char> turned_;
-};
-
 void orient_to_sensor(Surfels& surfels, const Eigen::Vector3d& sensor) {
     for (Surfel& s : surfels.at) {
         if (s.n.dot(sensor - s.p) < 0) {
@@ -133,36 +90,7 @@ void orient_to_file_normals(Surfels& surfels, const PointGrid& grid, const Scan&
     }
 }
 
-// Consistent signs along the spanning tree that crosses the least bent places first; says which piece each surfel is
-// of.
-void make_consistent(Surfels& surfels) {
-    std::vector<Surfel>& at = surfels.at;
-    std::vector<Link> edges;
-    for (std::uint32_t a = 0; a < at.size(); ++a) {
-        for (const std::uint32_t b : surfels.next[a]) {
-            if (b > a && at[a].n.squaredNorm() > 0 && at[b].n.squaredNorm() > 0) {
-                // Steps within a sheet are cheap, steps from one face of a thin wall to the other dear.
-                const Eigen::Vector3d d = (at[b].p - at[a].p).normalized();
-                const double off_sheet = std::abs(at[a].n.dot(d)) + std::abs(at[b].n.dot(d));
-                edges.push_back({static_cast<float>(1 - std::abs(at[a].n.dot(at[b].n)) + 0.5 * off_sheet), a, b});
-            }
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    TurnedSets sets(at.size());
-    for (const Link& e : edges) {
-        sets.join(e.a, e.b, at[e.a].n.dot(at[e.b].n) < 0);
-    }
-    for (std::uint32_t i = 0; i < at.size(); ++i) {
-        const auto [root, turned] = sets.find(i);
-        at[i].piece = root;
-        if (turned) {
-            at[i].n = -at[i].n;
-        }
-    }
-}
-
-// Per piece: how many more of its normals are free than of their opposites. One ray in fifty must decide. Returns the
+// Per piece: how many more of its normals are free than of their opposites. Returns the
 // share of deciding rays in the largest piece.
 double turn_outwards(Surfels& surfels, const PointGrid& grid) {
     std::vector<Surfel>& at = surfels.at;
@@ -189,7 +117,8 @@ double turn_outwards(Surfels& surfels, const PointGrid& grid) {
         ++size[at[i].piece];
     }
     for (Surfel& s : at) {
-        s.decided = std::abs(votes[s.piece]) * 50 * static_cast<int>(stride) >= size[s.piece] && votes[s.piece] != 0;
+        const double clear = std::abs(votes[s.piece]) * static_cast<double>(stride) / size[s.piece];
+        s.side = clear >= kClear ? AirSide::known : clear >= kHint ? AirSide::assumed : AirSide::unknown;
         if (votes[s.piece] < 0) {
             s.n = -s.n;
         }
@@ -239,7 +168,8 @@ void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan) {
     }
     make_consistent(surfels);
     const double clearness = turn_outwards(surfels, grid);
-    const auto open = std::count_if(surfels.at.begin(), surfels.at.end(), [](const Surfel& s) { return !s.decided; });
+    const auto open =
+        std::count_if(surfels.at.begin(), surfels.at.end(), [](const Surfel& s) { return s.side == AirSide::unknown; });
     const auto side = clearness < kClear ? turn_to_side_of_main_plane(surfels, grid) : std::nullopt;
     if (side) {
         surfels.orientation_reason = *side;

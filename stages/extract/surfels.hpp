@@ -15,13 +15,16 @@
 
 namespace seampath::detail {
 
+/// How sure it is on which side of a surface the air lies.
+enum class AirSide { known, assumed, unknown };
+
 /// The scan, thinned to one element a cell: what coarse work looks at.
 struct Surfel {
-    Eigen::Vector3d p;           ///< mean of the cell's points, relative to the scan's origin, mm
-    Eigen::Vector3d n{0, 0, 0};  ///< unit, out of the material; zero where too few neighbours
-    std::uint32_t piece = 0;     ///< of the scan that hangs together, by its first surfel
-    bool decided = true;         ///< something told which side of its piece is the air
-    double flatness = 0;         ///< rms distance of the neighbours from their plane, mm
+    Eigen::Vector3d p;              ///< mean of the cell's points, relative to the scan's origin, mm
+    Eigen::Vector3d n{0, 0, 0};     ///< unit, out of the material; zero where too few neighbours
+    std::uint32_t piece = 0;        ///< of the scan that hangs together, by its first surfel
+    AirSide side = AirSide::known;  ///< how sure it is that n points there; the same for all of a piece
+    double flatness = 0;            ///< rms distance of the neighbours from their plane, mm
 };
 
 /// A list of surfels for each surfel. Lists of neighbouring surfels share their memory, which is half of what a list
@@ -67,7 +70,8 @@ Surfels make_surfels(const PointGrid& grid, double radius);
 /// normals are made consistent over each connected piece (minimum spanning tree, Hoppe et al. 1992) and each piece is
 /// turned so that fewer of its normals run into other parts of the scan: what a scanner saw is open to the outside, and
 /// the inside of a box, web or pipe is not. Where few rays decide, a plane that is much of the scan with all else on
-/// one side of it does. A piece of which nothing told is left as it is and marked as not decided.
+/// one side of it does; that is an assumption where the plane ends at the walls that stand on it, since a block and a
+/// trough are then the same points. A piece of which nothing told is left as it is.
 void orient(Surfels& surfels, const PointGrid& grid, const Scan& scan);
 
 }  // namespace seampath::detail

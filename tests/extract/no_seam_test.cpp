@@ -159,7 +159,7 @@ TEST(NoMeasurement, WhereAllPointsAreInOnePlace) {
 class OtherKinds : public testing::TestWithParam<JointChoice> {};
 INSTANTIATE_TEST_SUITE_P(OfJoints, OtherKinds,
                          testing::Values(JointChoice::lap, JointChoice::butt, JointChoice::v_groove,
-                                         JointChoice::corner, JointChoice::saddle));
+                                         JointChoice::saddle));
 
 TEST_P(OtherKinds, ThanTheScanShowsGiveNoSeamAndSayWhatThereIs) {
     ExtractOptions options;
@@ -167,6 +167,30 @@ TEST_P(OtherKinds, ThanTheScanShowsGiveNoSeamAndSayWhatThereIs) {
     const Extraction extraction = extract(corner_scan(40), options);
     EXPECT_TRUE(extraction.seams.empty());
     EXPECT_THAT(extraction.remarks, testing::Contains(testing::HasSubstr("but the scan shows a fillet")));
+}
+
+// Of a web that the plate is seen on both sides of, nobody can take the inside for the outside.
+TEST(Corner, AskedOfAFilletGivesNoSeamAndSaysWhatThereIs) {
+    std::vector<Eigen::Vector3f> points;
+    for (const double side : {-1.0, 1.0}) {  // of a web of 8 mm on a plate
+        add_rectangle(points, {0, 4 * side, 0}, Vector3d::UnitX(), 60, side * Vector3d::UnitY(), 25, kUsual);
+        add_rectangle(points, {0, 4 * side, 0}, Vector3d::UnitX(), 60, Vector3d::UnitZ(), 25, kUsual);
+    }
+    ExtractOptions options;
+    options.joint = JointChoice::corner;
+    const Extraction extraction = extract(scan_of_points(std::move(points)), options);
+    EXPECT_TRUE(extraction.seams.empty());
+    EXPECT_THAT(extraction.remarks, testing::Contains(testing::HasSubstr("but the scan shows a fillet")));
+}
+
+// Two faces alone may be either: who asks for a corner is believed, and told.
+TEST(Corner, AskedOfTwoFacesIsFound) {
+    ExtractOptions options;
+    options.joint = JointChoice::corner;
+    const Extraction extraction = extract(corner_scan(40), options);
+    ASSERT_EQ(extraction.seams.size(), 1u);
+    EXPECT_EQ(extraction.seams[0].kind, JointKind::corner);
+    EXPECT_NE(extraction.orientation_reason.find("since corners were asked for"), std::string::npos);
 }
 
 TEST(Degenerate, ExactCornerIsFound) {

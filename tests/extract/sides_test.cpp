@@ -74,5 +74,29 @@ TEST(FloorAndWall, AreAPlateAndItsEdgeWhereTheWallIsLow) {
         << extraction.orientation_reason;
 }
 
+/// What is seen of a block from above: its top, 60 by 45 mm, and its sides.
+std::vector<Eigen::Vector3f> top_and_sides(double height, int sides) {
+    std::vector<Eigen::Vector3f> points;
+    add_face(points, {0, 0, 0}, {60, 0, 0}, {0, 45, 0}, 1);
+    const Vector3d down(0, 0, -height);
+    add_face(points, {0, 0, 0}, {60, 0, 0}, down, 2);
+    add_face(points, {0, 0, 0}, {0, 45, 0}, down, 3);
+    add_face(points, {0, 45, 0}, {60, 0, 0}, down, 4);
+    if (sides == 4) {
+        add_face(points, {60, 0, 0}, {0, 45, 0}, down, 5);
+    }
+    return points;
+}
+
+TEST(Blocks, HaveNoFilletsHoweverHighTheyAre) {
+    for (const int sides : {3, 4}) {
+        for (const double height : {6.0, 14.0, 30.0, 44.0}) {
+            const Extraction extraction = extract(scan_of_points(top_and_sides(height, sides)), {});
+            EXPECT_EQ(extraction.seams.size(), 0u)
+                << sides << " sides of " << height << " mm: " << extraction.orientation_reason;
+        }
+    }
+}
+
 }  // namespace sides_test
 }  // namespace seampath
