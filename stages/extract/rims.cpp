@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "stages/extract/face_width.hpp"
 #include "stages/geometry/robust.hpp"
@@ -11,6 +12,7 @@ namespace seampath::detail {
 namespace {
 
 constexpr double kLeastFaceWidth = 1.0 / 3;  // of the wider face
+constexpr double kAlike = 1.5;               // times a plate's thickness is as wide as its rims are seen
 constexpr double kLeastRim = 0.5;            // of the narrower face's width
 
 // A place in the middle of a face, between its edges.
@@ -22,12 +24,14 @@ struct Middle {
 struct Sides {
     std::vector<Middle> middle[2];
     double width[2] = {0, 0};  // mm, median
+    double length = 0;         // mm, of the edge
     int narrow() const { return width[0] <= width[1] ? 0 : 1; }
 };
 
 Sides sides_of(const Around& around, const Fold& edge) {
     const double most = 400 * around.grid.cell();
     Sides sides;
+    sides.length = length_of(edge.way);
     for (int k = 0; k < 2; ++k) {
         std::vector<double> widths;
         for (std::size_t i = 0; i < edge.way.size(); i += std::max<std::size_t>(1, edge.way.size() / 40)) {
@@ -52,6 +56,43 @@ bool on_rims(const std::vector<Middle>& face, const std::vector<Middle>& rims, d
     return 2 * static_cast<std::size_t>(known) > face.size();
 }
 
+// Whether two places lie on one flat face.
+bool on_one_face(const Middle& a, const Middle& b, double reach) {
+    return a.n.dot(b.n) > 0.95 && std::abs(a.n.dot(b.p - a.p)) < reach;
+}
+
+// How thick the plate is that an edge's wider face belongs to, by the narrow faces at the other edges of that face:
+// half of the way along them they are no wider. 0 where such edges are short beside this one.
+double thickness_beside(const std::vector<Sides>& sides, std::size_t edge, double reach) {
+    const Sides& own = sides[edge];
+    const auto& face = own.middle[1 - own.narrow()];
+    std::vector<std::pair<double, double>> rims;  // width, length
+    double length = 0;
+    for (std::size_t j = 0; j < sides.size(); ++j) {
+        const int narrow = sides[j].narrow();
+        const double width = sides[j].width[narrow];
+        const auto& theirs = sides[j].middle[1 - narrow];
+        if (j != edge && width < kLeastFaceWidth * sides[j].width[1 - narrow] &&
+            std::any_of(face.begin(), face.end(),
+                        [&](const Middle& m) { return on_one_face(m, theirs[theirs.size() / 2], reach); })) {
+            rims.emplace_back(width, sides[j].length);
+            length += sides[j].length;
+        }
+    }
+    if (length < 0.5 * own.length) {
+        return 0;
+    }
+    std::sort(rims.begin(), rims.end());
+    double before = 0;
+    for (const auto& [width, of_length] : rims) {
+        before += of_length;
+        if (before >= 0.5 * length) {
+            return width;
+        }
+    }
+    return 0;
+}
+
 }  // namespace
 
 double length_of(const std::vector<TrackPoint>& way) {
@@ -67,12 +108,18 @@ void leave_out_rims(const Around& around, double max_thickness, std::vector<Fold
     std::vector<Sides> sides;
     std::vector<std::string> why(edges.size());
     std::vector<Middle> rims;
+    const double reach = 3 * around.grid.cell();
+    for (const Fold& edge : edges) {
+        sides.push_back(sides_of(around, edge));
+    }
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        sides.push_back(sides_of(around, edges[i]));
-        const Sides& s = sides.back();
+        const Sides& s = sides[i];
         const int k = s.narrow();
-        const double length = length_of(edges[i].way);
-        if (s.width[k] < (max_thickness > 0 ? max_thickness : kLeastFaceWidth * s.width[1 - k])) {
+        const double length = s.length, thickness = thickness_beside(sides, i, reach);
+        const double widest = max_thickness > 0 ? max_thickness
+                              : thickness > 0   ? kAlike * thickness
+                                                : kLeastFaceWidth * s.width[1 - k];
+        if (s.width[k] < widest) {
             why[i] = "a face of " + fixed(s.width[k], 1) + " mm beside one of " + fixed(s.width[1 - k], 1) +
                      " mm is taken for a plate's rim; extract.max_thickness_mm sets how wide a rim may be";
             // The edge that is shorter than a rim is wide runs across it.
@@ -83,7 +130,6 @@ void leave_out_rims(const Around& around, double max_thickness, std::vector<Fold
             why[i] = "shorter than half of its narrower face, " + fixed(s.width[k], 1) + " mm";
         }
     }
-    const double reach = 3 * around.grid.cell();
     std::vector<Fold> joints;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         if (why[i].empty() && (on_rims(sides[i].middle[0], rims, reach) || on_rims(sides[i].middle[1], rims, reach))) {

@@ -98,5 +98,33 @@ TEST(Blocks, HaveNoFilletsHoweverHighTheyAre) {
     }
 }
 
+/// A plate of 100 by 60 mm, 9 mm thick on three sides, from whose fourth a face hangs down; all turned, as parts lie.
+Scan plate_with_hanging_face(double hanging) {
+    std::vector<Eigen::Vector3f> points;
+    add_face(points, {0, 0, 0}, {100, 0, 0}, {0, 60, 0}, 1);
+    add_face(points, {0, 0, 0}, {100, 0, 0}, {0, 0, -9}, 2);
+    add_face(points, {0, 60, 0}, {100, 0, 0}, {0, 0, -9}, 3);
+    add_face(points, {0, 0, 0}, {0, 60, 0}, {0, 0, -9}, 4);
+    add_face(points, {100, 0, 0}, {0, 60, 0}, {0, 0, -hanging}, 5);
+    const Eigen::Quaternionf turn = Eigen::Quaternionf(0.4F, -0.7F, 0.2F, 0.5F).normalized();
+    for (Eigen::Vector3f& p : points) {
+        p = turn * p;
+    }
+    return scan_of_points(std::move(points));
+}
+
+// 30 mm are less than a third of the 100 that the plate goes on for, 14 are more than half as much again as it is
+// thick.
+TEST(Rims, AreKnownFromTheOtherRimsOfTheirPlate) {
+    ExtractOptions options;
+    options.joint = JointChoice::corner;
+    for (const double hanging : {18.0, 30.0, 60.0}) {
+        const Extraction extraction = extract(plate_with_hanging_face(hanging), options);
+        ASSERT_EQ(extraction.seams.size(), 1u) << hanging << " mm";
+        EXPECT_NEAR(length_of(extraction.seams[0]), 60, 2) << hanging << " mm";
+    }
+    EXPECT_TRUE(extract(plate_with_hanging_face(9), options).seams.empty());
+}
+
 }  // namespace sides_test
 }  // namespace seampath
