@@ -11,10 +11,14 @@
 namespace seampath::detail {
 namespace {
 
+constexpr float kSheet = 0.1F;
+constexpr std::size_t kLarge = 100;  // surfels; less is no more than a strip along an edge
+
 struct Link {
     float cost;
     std::uint32_t a, b;
-    float agree;  // cosine between their normals once moved together; below 0 they point to different sides
+    float agree;  // cosine between their normals once moved together, below 0 where they point to different sides; less
+                  // where one lies before the other, since noise and facing walls say the contrary of each other there
     bool operator<(const Link& o) const { return std::tie(cost, a, b) < std::tie(o.cost, o.a, o.b); }
 };
 
@@ -71,7 +75,8 @@ std::vector<Link> links_of(const Surfels& surfels) {
                 // Steps within a sheet are cheap, steps from one face of a thin wall to the other dear.
                 const double bend = 1 - std::min(std::abs(at[a].n.dot(at[b].n)), std::abs(agree));
                 const double off_sheet = std::abs(along) + std::abs(at[b].n.dot(d));
-                links.push_back({static_cast<float>(bend + 0.5 * off_sheet), a, b, static_cast<float>(agree)});
+                links.push_back({static_cast<float>(bend + 0.5 * off_sheet), a, b,
+                                 static_cast<float>(agree * (1 - 0.5 * off_sheet))});
             }
         }
     }
@@ -150,14 +155,20 @@ private:
 }  // namespace
 
 void make_consistent(Surfels& surfels) {
-    constexpr float kSheet = 0.1F;
     const std::vector<Link> links = links_of(surfels);
-    const auto bent = std::partition_point(links.begin(), links.end(), [](const Link& l) { return l.cost < kSheet; });
     TurnedSets sets(surfels.at.size());
-    for (auto link = links.begin(); link != bent; ++link) {
-        sets.join(link->a, link->b, link->agree < 0);
+    std::vector<std::size_t> size(surfels.at.size(), 1);
+    std::vector<Link> between;
+    for (const Link& link : links) {
+        const std::uint32_t a = sets.find(link.a).first, b = sets.find(link.b).first;
+        if (a != b && link.cost > kSheet && std::min(size[a], size[b]) > kLarge) {
+            between.push_back(link);
+        } else if (a != b) {
+            sets.join(link.a, link.b, link.agree < 0);
+            size[std::min(a, b)] = size[a] + size[b];
+        }
     }
-    SheetJoiner(sets, surfels.at.size(), {bent, links.end()}).join();
+    SheetJoiner(sets, surfels.at.size(), between).join();
     for (std::uint32_t i = 0; i < surfels.at.size(); ++i) {
         const auto [root, turned] = sets.find(i);
         surfels.at[i].piece = root;

@@ -165,8 +165,9 @@ Fields describe(ExtractOptions& o) {
          "joint kind to look for; auto: by what is seen, each seam with a confidence and a reason"},
         {"convex", &o.convex, "auto also reports convex edges, as corner joints: every block has some"},
         {"max_thickness_mm", &o.max_thickness_mm,
-         "a convex edge with a face no wider than this is a plate's rim, no corner joint; 0: by the other rims of the "
-         "plate, or a third of the other face",
+         "a convex edge with a face no wider than this is a plate's rim, no corner joint; 0: a third of the other "
+         "face, "
+         "a quarter where the plate's other rims are narrower",
          at_least(0)},
         {"max_step_mm", &o.max_step_mm,
          "highest step between parallel faces that is taken for machined; a higher one whose upper plate is three "

@@ -132,13 +132,6 @@ std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& 
     return joints;
 }
 
-double registration_that_counts(const Tracker& tracker, double registration_mm) {
-    // 68 % of Student's t with f degrees of freedom lie within 1 + 0.6 / f, and two flanks see each view in two
-    // directions.
-    const double freedom = 2 * std::max(1.0, static_cast<double>(tracker.view_starts.size()) - 1);
-    return registration_mm * (1 + 0.6 / freedom);
-}
-
 Folds find_folds(const Around& around, bool concave, bool convex, const ExtractOptions& options,
                  const std::vector<Track>& taken) {
     const Tracker& following = around.following;
@@ -168,8 +161,9 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
         ways.push_back({measuring, &fold.way});
     }
     result.registration_mm = registration_of(differences);
-    std::vector<SeamSurfaces> surfaces =
-        settle_on_whole_flanks(ways, registration_that_counts(following, result.registration_mm));
+    std::vector<SeamSurfaces> surfaces = settle_on_whole_flanks(
+        ways,
+        registration_that_counts(result.registration_mm, following.view_starts.size(), around.field.overall.noise));
     for (std::size_t i = 0; i < folds.size(); ++i) {
         folds[i].surfaces = std::move(surfaces[i]);
         result.seams.push_back(seam_of(folds[i], around.scan.origin_mm));

@@ -27,7 +27,4 @@ Folds find_folds(const Around& around, bool concave, bool convex, const ExtractO
 std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length_mm,
                               std::vector<std::string>& remarks);
 
-/// 1-sigma of the views' shifts as it counts, that few views tell but roughly.
-double registration_that_counts(const Tracker& tracker, double registration_mm);
-
 }  // namespace seampath::detail

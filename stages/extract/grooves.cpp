@@ -257,10 +257,10 @@ Grooves find_grooves(const Around& around, double min_length_mm) {
         add_differences(differences, around, way);
     }
     result.registration_mm = registration_of(differences);
-    const double freedom = 2 * std::max(1.0, static_cast<double>(following.view_starts.size()) - 1);
+    const double counts =
+        registration_that_counts(result.registration_mm, following.view_starts.size(), around.field.overall.noise);
     for (const GrooveWay& way : ways) {
-        result.seams.push_back(seam_of(way, around.scan.origin_mm, result.registration_mm * (1 + 0.6 / freedom),
-                                       around.field.overall.spacing));
+        result.seams.push_back(seam_of(way, around.scan.origin_mm, counts, around.field.overall.spacing));
     }
     return result;
 }

@@ -293,7 +293,8 @@ Laps find_laps(const Around& around, const std::vector<Border>& borders, const L
         lap.measured.way = without_jumps(std::move(lap.measured.way), lap.measured.closed);
         ways.push_back({measuring, &lap.measured.way});
     }
-    settle_on_whole_flanks(ways, registration_that_counts(around.following, result.registration_mm));
+    settle_on_whole_flanks(ways, registration_that_counts(result.registration_mm, around.following.view_starts.size(),
+                                                          around.field.overall.noise));
     for (const Lap& lap : laps) {
         result.seams.push_back(seam_of(lap, around.scan.origin_mm, asked));
     }

@@ -24,6 +24,11 @@ void add_differences(ViewDifferences& sum, const std::vector<TrackPoint>& way);
 /// one.
 double registration_of(const ViewDifferences& sum);
 
+/// What a seam's sigma takes a view's shift to be, mm: few views tell it badly, and two may agree by chance. A scan of
+/// several views is taken to be registered to half of its noise before they are looked at, as if one more view had told
+/// so; 0 for one view.
+double registration_that_counts(double registration_mm, std::size_t views, double noise_mm);
+
 /// How the views' shifts move a surface that was fitted to all of a flank's points.
 class ShiftOfSurface {
 public:

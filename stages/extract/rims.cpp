@@ -12,6 +12,8 @@ namespace seampath::detail {
 namespace {
 
 constexpr double kLeastFaceWidth = 1.0 / 3;  // of the wider face
+constexpr double kSurelyRim = 1.0 / 4;       // of the wider face, whatever the plate's other rims are like
+constexpr double kStrip = 1.5;               // times its width a rim is long at least, to tell a thickness
 constexpr double kAlike = 1.5;               // times a plate's thickness is as wide as its rims are seen
 constexpr double kLeastRim = 0.5;            // of the narrower face's width
 
@@ -72,9 +74,10 @@ double thickness_beside(const std::vector<Sides>& sides, std::size_t edge, doubl
         const int narrow = sides[j].narrow();
         const double width = sides[j].width[narrow];
         const auto& theirs = sides[j].middle[1 - narrow];
-        if (j != edge && width < kLeastFaceWidth * sides[j].width[1 - narrow] &&
-            std::any_of(face.begin(), face.end(),
-                        [&](const Middle& m) { return on_one_face(m, theirs[theirs.size() / 2], reach); })) {
+        const bool strip = width < kLeastFaceWidth * sides[j].width[1 - narrow] && sides[j].length > kStrip * width;
+        if (j != edge && strip && std::any_of(face.begin(), face.end(), [&](const Middle& m) {
+                return on_one_face(m, theirs[theirs.size() / 2], reach);
+            })) {
             rims.emplace_back(width, sides[j].length);
             length += sides[j].length;
         }
@@ -116,9 +119,9 @@ void leave_out_rims(const Around& around, double max_thickness, std::vector<Fold
         const Sides& s = sides[i];
         const int k = s.narrow();
         const double length = s.length, thickness = thickness_beside(sides, i, reach);
-        const double widest = max_thickness > 0 ? max_thickness
-                              : thickness > 0   ? kAlike * thickness
-                                                : kLeastFaceWidth * s.width[1 - k];
+        const bool unlike_rims = thickness > 0 && s.width[k] > kAlike * thickness;
+        const double widest =
+            max_thickness > 0 ? max_thickness : (unlike_rims ? kSurelyRim : kLeastFaceWidth) * s.width[1 - k];
         if (s.width[k] < widest) {
             why[i] = "a face of " + fixed(s.width[k], 1) + " mm beside one of " + fixed(s.width[1 - k], 1) +
                      " mm is taken for a plate's rim; extract.max_thickness_mm sets how wide a rim may be";

@@ -20,8 +20,8 @@ double length_of(const std::vector<TrackPoint>& way);  ///< mm
 /// Every block has convex edges, and every plate a rim. A convex edge is a corner joint where two faces of comparable
 /// width meet along more than a fraction of it, and neither of them is known from its other edge as a plate's rim.
 /// Takes those that are none out of `edges`, with a remark each. `max_thickness` (mm): faces up to this width are rims;
-/// 0: faces about as wide as the rims at the other edges of the same plate, or, where it shows none, up to a third as
-/// wide as the plate.
+/// 0: faces up to a third as wide as the other; where the plate shows other rims and they are narrower, up to a
+/// quarter.
 void leave_out_rims(const Around& around, double max_thickness, std::vector<Fold>& edges,
                     std::vector<std::string>& remarks);
 

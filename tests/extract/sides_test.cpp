@@ -113,12 +113,11 @@ Scan plate_with_hanging_face(double hanging) {
     return scan_of_points(std::move(points));
 }
 
-// 30 mm are less than a third of the 100 that the plate goes on for, 14 are more than half as much again as it is
-// thick.
+// 30 mm are less than a third of the 100 that the plate goes on for, but it is 9 mm thick.
 TEST(Rims, AreKnownFromTheOtherRimsOfTheirPlate) {
     ExtractOptions options;
     options.joint = JointChoice::corner;
-    for (const double hanging : {18.0, 30.0, 60.0}) {
+    for (const double hanging : {30.0, 60.0}) {
         const Extraction extraction = extract(plate_with_hanging_face(hanging), options);
         ASSERT_EQ(extraction.seams.size(), 1u) << hanging << " mm";
         EXPECT_NEAR(length_of(extraction.seams[0]), 60, 2) << hanging << " mm";
