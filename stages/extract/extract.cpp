@@ -104,6 +104,33 @@ void leave_out_beside_grooves(std::vector<Seam>& seams, const std::vector<Seam>&
     std::erase_if(seams, [&](const Seam& seam) { return beside_groove(seam, found, spacing); });
 }
 
+// What stands in the gap between two plates and has a seam with each of them makes it none: they are a plate under a
+// web.
+void leave_out_bridged(std::vector<Seam>& seams, const std::vector<Seam>& folds, double spacing) {
+    const auto has_fold = [&](const SeamPoint& point, double reach, const Eigen::Vector3d& to) {
+        return std::any_of(folds.begin(), folds.end(), [&](const Seam& fold) {
+            return std::any_of(fold.points.begin(), fold.points.end(), [&](const SeamPoint& p) {
+                const Eigen::Vector3d d = p.p - point.p;
+                return d.norm() < reach && d.dot(to) > 0;
+            });
+        });
+    };
+    std::erase_if(seams, [&](const Seam& seam) {
+        if (seam.kind != JointKind::butt) {
+            return false;
+        }
+        std::size_t bridged = 0;
+        for (std::size_t i = 0; i < seam.points.size(); ++i) {
+            const SeamPoint& point = seam.points[i];
+            const SeamPoint& next = seam.points[i + 1 < seam.points.size() ? i + 1 : i - 1];
+            const Eigen::Vector3d across = (next.p - point.p).cross(point.n1 + point.n2);
+            const double reach = 0.5 * seam.groove[i].gap_mm.value + 3 * spacing;
+            bridged += has_fold(point, reach, across) && has_fold(point, reach, -across);
+        }
+        return 2 * bridged > seam.points.size();
+    });
+}
+
 // Each kind of joint in turn: what one explains is not offered to the next. `creases` are those of `around`.
 void find_joints(Extraction& result, const Around& around, std::vector<Crease>& creases,
                  const ExtractOptions& options) {
@@ -136,6 +163,7 @@ void find_joints(Extraction& result, const Around& around, std::vector<Crease>& 
     if (options.joint == JointChoice::saddle) {
         std::erase_if(folds.seams, [](const Seam& seam) { return seam.kind != JointKind::saddle; });
     }
+    leave_out_bridged(result.seams, folds.seams, around.field.overall.spacing);
     take(result, std::move(folds.seams), std::move(folds.remarks));
     if (fillet) {
         take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});

@@ -94,5 +94,22 @@ TEST(ButtsNot, ArePlainPlatesWithStepsAndHoles) {
     }
 }
 
+// The web stands in the gap, and has a seam with both sides of the plate.
+TEST(ButtsNot, AreThePlateUnderAWeb) {
+    SceneOptions o;
+    o.kind = SceneKind::tee;
+    o.length_mm = 14;
+    o.margin_mm = 6;
+    o.height_mm = 8;
+    o.thickness_mm = 3;
+    ScannerOptions scanner = preset("metrology");
+    scanner.views = 2;
+    const Extraction extraction = extract(scan_of(make_dataset(o, scanner, 5)), {});
+    ASSERT_EQ(extraction.seams.size(), 2u);
+    for (const Seam& seam : extraction.seams) {
+        EXPECT_EQ(seam.kind, JointKind::fillet);
+    }
+}
+
 }  // namespace butt_test
 }  // namespace seampath
