@@ -241,7 +241,7 @@ bool blocked(const PointGrid& grid, const Eigen::Vector3d& p, const Eigen::Vecto
 std::optional<std::string> turn_to_side_of_main_plane(Surfels& surfels, const PointGrid& grid) {
     constexpr double kPiece = 0.05;  // of the scan; smaller ones are left
     std::vector<char> turned(surfels.at.size(), 0);
-    const auto reason = turn(surfels, {surfels, grid, std::nullopt}, turned);
+    auto reason = turn(surfels, {surfels, grid, std::nullopt}, turned);
     std::vector<std::size_t> size(surfels.at.size(), 0);
     for (const Surfel& s : surfels.at) {
         ++size[s.piece];
