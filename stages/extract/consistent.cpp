@@ -11,7 +11,7 @@
 namespace seampath::detail {
 namespace {
 
-constexpr float kSheet = 0.1F;
+constexpr float kSheet = 0.1F;       // a link that costs less is within a sheet
 constexpr std::size_t kLarge = 100;  // surfels; less is no more than a strip along an edge
 
 struct Link {

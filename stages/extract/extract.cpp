@@ -104,19 +104,19 @@ void leave_out_beside_grooves(std::vector<Seam>& seams, const std::vector<Seam>&
     std::erase_if(seams, [&](const Seam& seam) { return beside_groove(seam, found, spacing); });
 }
 
-// What stands in the gap between two plates and has a seam with each of them makes it none: they are a plate under a
-// web.
+// What looks like a gap is none where a web stands in it, that has a fillet with either side: one plate goes on below.
 void leave_out_bridged(std::vector<Seam>& seams, const std::vector<Seam>& folds, double spacing) {
     const auto has_fold = [&](const SeamPoint& point, double reach, const Eigen::Vector3d& to) {
         return std::any_of(folds.begin(), folds.end(), [&](const Seam& fold) {
-            return std::any_of(fold.points.begin(), fold.points.end(), [&](const SeamPoint& p) {
-                const Eigen::Vector3d d = p.p - point.p;
-                return d.norm() < reach && d.dot(to) > 0;
-            });
+            return fold.kind != JointKind::corner &&
+                   std::any_of(fold.points.begin(), fold.points.end(), [&](const SeamPoint& p) {
+                       const Eigen::Vector3d d = p.p - point.p;
+                       return d.norm() < reach && d.dot(to) > 0;
+                   });
         });
     };
     std::erase_if(seams, [&](const Seam& seam) {
-        if (seam.kind != JointKind::butt) {
+        if (seam.kind != JointKind::butt || seam.points.size() < 2) {
             return false;
         }
         std::size_t bridged = 0;

@@ -90,8 +90,8 @@ void orient_to_file_normals(Surfels& surfels, const PointGrid& grid, const Scan&
     }
 }
 
-// Per piece: how many more of its normals are free than of their opposites. Returns the
-// share of deciding rays in the largest piece.
+// Per piece: how many more of its normals are free than of their opposites. Returns the share of deciding rays in the
+// largest piece.
 double turn_outwards(Surfels& surfels, const PointGrid& grid) {
     std::vector<Surfel>& at = surfels.at;
     const Eigen::Vector3d low =

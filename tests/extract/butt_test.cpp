@@ -94,6 +94,16 @@ TEST(ButtsNot, ArePlainPlatesWithStepsAndHoles) {
     }
 }
 
+// The top edges of both plates are no web in the gap.
+TEST(ButtsToo, AreFoundWhereConvexEdgesAreAskedFor) {
+    ExtractOptions convex;
+    convex.convex = true;
+    const Found found = find_in(small_plates(SceneKind::butt), 3, convex);
+    EXPECT_EQ(std::count_if(found.extraction.seams.begin(), found.extraction.seams.end(),
+                            [](const Seam& seam) { return seam.kind == JointKind::butt; }),
+              1);
+}
+
 // The web stands in the gap, and has a seam with both sides of the plate.
 TEST(ButtsNot, AreThePlateUnderAWeb) {
     SceneOptions o;
