@@ -5,7 +5,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 build_packages=(g++ cmake ninja-build ccache libeigen3-dev nlohmann-json3-dev libcli11-dev zlib1g-dev libpng-dev
     libjpeg62-turbo-dev liblzf-dev libssl-dev libsqlite3-dev libjs-three libopencv-calib3d-dev libopencv-contrib-dev)
-test_packages=(libgtest-dev libgmock-dev liborocos-kdl-dev chromium)
+test_packages=(libgtest-dev libgmock-dev liborocos-kdl-dev chromium patch)
 # Programs of others that our robot programs are held against. Many packages: without them their tests are skipped.
 client_packages=(linuxcnc-uspace python3-geometry-msgs python3-trajectory-msgs python3-genpy)
 check_packages=(clang clang-format clang-tidy)
