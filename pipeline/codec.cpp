@@ -53,9 +53,9 @@ void members(auto& archive, Is<SeamSurfaces> auto& v) {
 }
 
 void members(auto& archive, Is<Seam> auto& v) {
-    auto& [kind, closed, confidence, kind_reason, points, groove, surfaces] = v;
+    auto& [kind, closed, confidence, kind_reason, points, groove, surfaces, corners] = v;
     archive("kind", kind)("closed", closed)("confidence", confidence)("kind_reason", kind_reason)("points", points);
-    archive("groove", groove)("surfaces", surfaces);
+    archive("groove", groove)("surfaces", surfaces)("corners", corners);
 }
 
 void members(auto& archive, Is<Extraction> auto& v) {
@@ -97,10 +97,12 @@ void members(auto& archive, Is<BandSample> auto& v) {
 }
 
 void members(auto& archive, Is<SeamModel> auto& v) {
-    auto& [kind, closed, curve, length_mm, flanks, rms_mm, max_mm, degrees_of_freedom, model, reason, saddle, band] = v;
+    auto& [kind, closed, curve, length_mm, flanks, rms_mm, max_mm, degrees_of_freedom, model, reason, saddle, band,
+           corners_mm] = v;
     archive("kind", kind)("closed", closed)("curve", curve)("length_mm", length_mm)("flanks", flanks);
     archive("residual_rms_mm", rms_mm)("residual_max_mm", max_mm)("degrees_of_freedom", degrees_of_freedom);
     archive("model", model)("reason", reason)("saddle", saddle)("band", band);
+    archive("corners_mm", corners_mm);
 }
 
 void members(auto& archive, Is<DeviationSample> auto& v) {

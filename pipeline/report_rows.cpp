@@ -179,6 +179,13 @@ std::string part_sentence(const PartResult& part, std::size_t in_tolerance) {
     for (std::size_t i = 1; i < part.models.size(); ++i) {
         worst = tolerance_used(part.deviations[i]) > tolerance_used(part.deviations[worst]) ? i : worst;
     }
+    const auto wide = std::find_if(part.deviations.begin(), part.deviations.end(), [&](const Deviation& deviation) {
+        return wide_by_noise(deviation, part.config.validate);
+    });
+    if (wide != part.deviations.end()) {
+        path += "; a tolerance of " + fixed(wide->tolerance_mm, 2) +
+                " mm is only what the scan's noise allows, set validate.tolerance_mm to what the weld needs";
+    }
     return std::to_string(in_tolerance) + " of " + found +
            " within tolerance of the scanned surfaces; the worst, seam " + std::to_string(worst) + ", uses " +
            fixed(100 * tolerance_used(part.deviations[worst]), 0) + " % of its tolerance" + path;

@@ -215,6 +215,11 @@ ReportSeam seam_report(const PartResult& part, std::size_t i) {
     for (const std::size_t k : worst_samples(deviation, model)) {
         report.places.push_back(place_rows(deviation.samples[k]));
     }
+    if (!model.corners_mm.empty()) {
+        const auto behind = std::find_if(report.rows.begin(), report.rows.end(),
+                                         [](const ReportRow& row) { return row.name == "length_mm"; });
+        report.rows.insert(behind + 1, count("corners", "Corners", model.corners_mm.size()));
+    }
     const ReportRows model_facts = model_rows(model);
     const auto before = std::find_if(report.rows.begin(), report.rows.end(),
                                      [](const ReportRow& row) { return row.name == "residual_rms_mm"; });

@@ -82,7 +82,8 @@ Json model_json(const SeamModel& model) {
               {"control_points_mm", positions_json(model.curve.control)},
               {"residual_rms_mm", model.residual_rms_mm},
               {"residual_max_mm", model.residual_max_mm},
-              {"degrees_of_freedom", model.degrees_of_freedom}};
+              {"degrees_of_freedom", model.degrees_of_freedom},
+              {"corners_mm", model.corners_mm}};
     put_quality(json, model);
     return json;
 }

@@ -115,6 +115,9 @@ struct Seam {
     std::vector<SeamPoint> points;      ///< at least 4, in order along the seam
     std::vector<GrooveStation> groove;  ///< one a point of a butt joint or V-groove, otherwise empty
     SeamSurfaces surfaces;
+    /// Ascending indices of the points in which it turns sharply from one surface to the next; their normals are the
+    /// means of both sides'. A closed seam with corners begins at one.
+    std::vector<std::size_t> corners;
 };
 
 /// Nodes on a smooth line through the seam's points.
@@ -180,6 +183,9 @@ struct SeamModel {
     std::string reason;             ///< why that one, one sentence
     std::optional<SaddleParameters> saddle;
     std::vector<BandSample> band;  ///< at ascending stations; empty where the model does not tell
+    /// Ascending stations of its corners: the curve shares only its position there, and one flank sample stands for
+    /// each side. A closed one with corners begins at one.
+    std::vector<double> corners_mm;
 };
 
 /// Where one sample of the model lies relative to the scan's two flank surfaces.

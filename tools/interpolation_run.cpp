@@ -6,6 +6,7 @@
 
 #include "pipeline/stored_run.hpp"
 #include "stages/error.hpp"
+#include "stages/geometry/seam_pieces.hpp"
 #include "tools/exit_status.hpp"
 #include "tools/interpolation_seams.hpp"
 #include "tools/output.hpp"
@@ -40,6 +41,28 @@ SeamReport report_on(const SeamComparison& comparison, const Deviation& deviatio
     return report;
 }
 
+/// A line without corners: a seam, or what lies between two of its corners.
+struct SmoothSeam {
+    std::string name;
+    Seam seam;
+};
+
+std::vector<SmoothSeam> smooth_seams(const std::vector<Seam>& seams) {
+    std::vector<SmoothSeam> smooth;
+    for (std::size_t i = 0; i < seams.size(); ++i) {
+        const std::string name = "seam " + std::to_string(i);
+        if (seams[i].corners.empty()) {
+            smooth.push_back({name, seams[i]});
+            continue;
+        }
+        int number = 0;
+        for (SeamPiece& piece : pieces_of(seams[i])) {
+            smooth.push_back({name + ", piece " + std::to_string(number++), std::move(piece.seam)});
+        }
+    }
+    return smooth;
+}
+
 }  // namespace
 
 int interpolate_run(const InterpolateRun& given) {
@@ -49,20 +72,20 @@ int interpolate_run(const InterpolateRun& given) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     std::string text;
     int status = run.seams.empty() ? kOutOfTolerance : kPass;
-    for (std::size_t i = 0; i < run.seams.size(); ++i) {
-        std::cerr << "seam " << i << ": " << run.seams[i].points.size() << " points" << std::flush;
-        const MeasuredSeam measured = measure_seam(run.seams[i], run.scan, run.config.validate);
+    for (const auto& [name, seam] : smooth_seams(run.seams)) {
+        std::cerr << name << ": " << seam.points.size() << " points" << std::flush;
+        const MeasuredSeam measured = measure_seam(seam, run.scan, run.config.validate);
         if (measured.p.empty()) {
-            throw InputError("interpolate: both flanks of seam " + std::to_string(i) +
+            throw InputError("interpolate: both flanks of " + name +
                              " are measured nowhere; a scan of both was needed; scan the part again");
         }
         std::cerr << " -> " << measured.p.size() << " places measured" << std::flush;
-        comparisons.push_back(compare_methods(run.seams[i], measured, counts));
+        comparisons.push_back(compare_methods(seam, measured, counts));
         const Deviation deviation = validate(comparisons.back().best.model, run.scan, run.config.validate);
         status = deviation.pass ? status : kOutOfTolerance;
         std::cerr << "; least rms: " << comparisons.back().best.label << "\n";
         SeamReport report = report_on(comparisons.back(), deviation);
-        text += (i > 0 ? "\nseam " : "seam ") + std::to_string(i) + ": " + report.text;
+        text += (text.empty() ? "" : "\n") + name + ": " + report.text;
         json.push_back(std::move(report.json));
     }
     if (!given.out.empty() && !comparisons.empty()) {

@@ -14,6 +14,7 @@
 #include "stages/extract/folds.hpp"
 #include "stages/extract/grooves.hpp"
 #include "stages/extract/laps.hpp"
+#include "stages/extract/seam_corners.hpp"
 #include "stages/extract/slanted.hpp"
 #include "stages/extract/surfels.hpp"
 #include "stages/geometry/bulk.hpp"
@@ -25,6 +26,9 @@ namespace {
 using namespace detail;
 
 constexpr std::size_t kLeastScanPoints = 200;
+
+// In which ends of seams meet, in distances of their points: each ends within one of them before a corner.
+constexpr double kCornerReach = 1.5;
 
 // Distance of the points of a seam: as fine as the scan's points allow.
 double station_distance(const ScanScale& scale, std::size_t points) {
@@ -202,6 +206,8 @@ Fields describe(ExtractOptions& o) {
          "times "
          "as wide as thick, on a part that shows a side of its own, is a lap",
          at_least(0)},
+        {"join_at_corners", &o.join_at_corners,
+         "fillets that go on round a corner are one seam with corners; otherwise one seam a side"},
         {"min_length_mm", &o.min_length_mm, "shortest seam that is reported; 0 takes it from the scan", at_least(0)},
         {"station_mm", &o.station_mm, "distance of the extracted points; 0 takes it from the scan", at_least(0)}};
 }
@@ -243,6 +249,9 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
         ExtractOptions automatic = options;
         automatic.joint = JointChoice::automatic;
         contradict(result, options.joint, extract(scan, automatic).seams);
+    }
+    if (options.join_at_corners) {
+        join_at_corners(result.seams, kCornerReach * following.step);
     }
     std::stable_sort(result.seams.begin(), result.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });

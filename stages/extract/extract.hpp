@@ -18,8 +18,9 @@ struct ExtractOptions {
     bool convex = false;
     double max_thickness_mm = 0;  ///< of plates whose rims are no corners; 0: by the faces' widths
     double max_step_mm = 1.2;     ///< sheets that are lapped are thicker; machined steps mostly are not
-    double min_length_mm = 0;     ///< 0: from the scan
-    double station_mm = 0;        ///< 0: from the scan
+    bool join_at_corners = true;
+    double min_length_mm = 0;  ///< 0: from the scan
+    double station_mm = 0;     ///< 0: from the scan
 };
 Fields describe(ExtractOptions&);
 

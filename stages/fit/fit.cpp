@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "stages/error.hpp"
+#include "stages/fit/cornered.hpp"
 #include "stages/fit/interpolated.hpp"
 #include "stages/fit/saddle_model.hpp"
 #include "stages/geometry/bspline.hpp"
@@ -145,6 +146,26 @@ Normals fit_curve(const Seam& seam, const Nodes& nodes, const FitOptions& option
     return averaged_normals(seam);
 }
 
+// Each piece by itself. None goes round a pipe as a whole.
+SeamModel fit_round_corners(const Seam& seam, const Nodes& nodes, FitOptions options) {
+    if (options.model == FitModel::saddle) {
+        throw InputError("fit: fit.model saddle can't serve a seam with " + std::to_string(seam.corners.size()) +
+                         " corners; set fit.model to auto or spline");
+    }
+    if (options.model == FitModel::automatic) {
+        options = {};
+        options.model = FitModel::spline;
+    }
+    const std::vector<SeamPiece> pieces = pieces_of(seam);
+    const std::vector<Nodes> own =
+        interpolates(options.model) ? nodes_of_pieces(seam, nodes, pieces) : std::vector<Nodes>(pieces.size());
+    std::vector<SeamModel> models;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        models.push_back(fit(pieces[k].seam, own[k], options));
+    }
+    return join_pieces(seam, std::move(models));
+}
+
 }  // namespace
 
 Fields describe(FitOptions& o) {
@@ -164,6 +185,9 @@ Fields describe(FitOptions& o) {
 
 SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
     check_options(options);
+    if (!seam.corners.empty()) {
+        return fit_round_corners(seam, nodes, options);
+    }
     if (seam.points.size() < 6) {
         throw InputError("fit: the seam has " + std::to_string(seam.points.size()) +
                          " points; at least 6 are needed; lower extract.station_mm");

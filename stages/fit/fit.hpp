@@ -87,9 +87,11 @@ bool sets_nodes(FitModel model);
 /// and round, from their first node. Cubics become the B-spline exactly, with double and triple knots where they share
 /// one derivative or none; higher degrees are followed to within 1e-6 mm.
 ///
-/// Throws InputError for fewer than 6 points, a seam without length, neighbouring nodes in one place, and a model that
-/// can't serve the seam: `periodic` on an open one, `natural`, `clamped`, `not-a-knot` on a closed one, an axis along
-/// which the seam turns back, a `saddle` where there is none, an option that the model has no use for.
+/// A seam with corners is fitted piece by piece, with its corners where neighbouring pieces meet; no saddle serves it.
+///
+/// Throws InputError for fewer than 6 points (of a piece), a seam without length, neighbouring nodes in one place, and
+/// a model that can't serve the seam: `periodic` on an open one, `natural`, `clamped`, `not-a-knot` on a closed one, an
+/// axis along which the seam turns back, a `saddle` where there is none, an option that the model has no use for.
 SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options);
 
 }  // namespace seampath

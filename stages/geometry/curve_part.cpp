@@ -51,6 +51,14 @@ CubicPieces empty_pieces(const CubicBSpline& curve, double from, double to) {
     return pieces;
 }
 
+CubicPieces pieces_between(const CubicBSpline& curve, double from, double to) {
+    CubicPieces pieces = empty_pieces(curve, from, to);
+    for (std::size_t k = 0; k + 1 < pieces.breaks.size(); ++k) {
+        pieces.coefficients.push_back(coefficients(curve, pieces.breaks[k], pieces.breaks[k + 1]));
+    }
+    return pieces;
+}
+
 }  // namespace
 
 CubicBSpline reversed(const CubicBSpline& curve) {
@@ -67,10 +75,7 @@ CubicBSpline reversed(const CubicBSpline& curve) {
 
 CubicBSpline part_of(const CubicBSpline& curve, double from, double to, double before, double behind) {
     ensure(to > from, "a part of a curve has a length");
-    CubicPieces pieces = empty_pieces(curve, from, to);
-    for (std::size_t k = 0; k + 1 < pieces.breaks.size(); ++k) {
-        pieces.coefficients.push_back(coefficients(curve, pieces.breaks[k], pieces.breaks[k + 1]));
-    }
+    CubicPieces pieces = pieces_between(curve, from, to);
     if (before > 0) {
         const Vector3d start = pieces.coefficients.front()[0], along = pieces.coefficients.front()[1];
         const double span = before / along.norm();
@@ -88,6 +93,23 @@ CubicBSpline part_of(const CubicBSpline& curve, double from, double to, double b
         pieces.joints.push_back(kOneDerivative);
     }
     return as_bspline(pieces, false);
+}
+
+CubicBSpline joined(const std::vector<CubicBSpline>& parts, bool closed) {
+    ensure(!parts.empty(), "parts of a curve to join");
+    CubicPieces all;
+    all.breaks.push_back(first_parameter(parts.front()));
+    for (const CubicBSpline& part : parts) {
+        CubicPieces pieces = pieces_between(part, first_parameter(part), last_parameter(part));
+        pieces.joints.front() = kPositionOnly;
+        const double shift = all.breaks.back() - pieces.breaks.front();
+        for (std::size_t k = 0; k < pieces.coefficients.size(); ++k) {
+            all.breaks.push_back(pieces.breaks[k + 1] + shift);
+            all.coefficients.push_back(pieces.coefficients[k]);
+            all.joints.push_back(pieces.joints[k]);
+        }
+    }
+    return as_bspline(all, closed);
 }
 
 }  // namespace seampath

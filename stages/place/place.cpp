@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "stages/error.hpp"
+#include "stages/geometry/seam_pieces.hpp"
 #include "stages/place/spline_nodes.hpp"
 #include "stages/text.hpp"
 
@@ -119,6 +120,34 @@ void check_spacing(const PlaceOptions& o) {
     }
 }
 
+// Those of each piece, and its corners.
+Nodes place_round_corners(const Seam& seam, const PlaceOptions& options) {
+    Nodes nodes;
+    if (options.method != PlaceMethod::chord) {
+        nodes.line.emplace();
+    }
+    for (const SeamPiece& piece : pieces_of(seam)) {
+        const Nodes own = place(piece.seam, options);
+        nodes.max_chord_error_mm = std::max(nodes.max_chord_error_mm, own.max_chord_error_mm);
+        for (std::size_t k = 0; k < own.index.size(); ++k) {
+            const std::size_t index = piece.index[own.index[k]];
+            if (!nodes.index.empty() && (index == nodes.index.back() || index == 0)) {
+                continue;
+            }
+            nodes.index.push_back(index);
+            if (nodes.line) {
+                nodes.line->station_mm.push_back(nodes.line->length_mm + own.line->station_mm[k]);
+                nodes.line->p.push_back(own.line->p[k]);
+            }
+        }
+        if (nodes.line) {
+            nodes.line->length_mm += own.line->length_mm;
+            nodes.line->max_error_mm = std::max(nodes.line->max_error_mm, own.line->max_error_mm);
+        }
+    }
+    return nodes;
+}
+
 }  // namespace
 
 Fields describe(PlaceOptions& o) {
@@ -136,6 +165,9 @@ Fields describe(PlaceOptions& o) {
 
 Nodes place(const Seam& seam, const PlaceOptions& options) {
     check_spacing(options);
+    if (!seam.corners.empty()) {
+        return place_round_corners(seam, options);
+    }
     const std::size_t n = seam.points.size();
     const std::size_t least = options.method == PlaceMethod::chord ? 4 : 6;
     if (n < least) {

@@ -39,6 +39,8 @@ Fields describe(PlaceOptions&);
 /// `uniform`: the fewest places at equal steps along that line, to the nearest seam point, with which the spline holds
 /// the same tolerance.
 ///
+/// Corners of the seam are nodes, and nodes between two of them are placed as if there was nothing else.
+///
 /// Throws InputError for fewer than 4 points, a seam without length, and a least spacing above the largest.
 Nodes place(const Seam& seam, const PlaceOptions& options);
 

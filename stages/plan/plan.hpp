@@ -84,6 +84,7 @@ struct PlanOptions {
     std::optional<double> tilt_rate_deg_mm;
     RollLaw roll = RollLaw::travel;
     double roll_deg = 0;
+    double corner_reach_mm = 10;
     double start_station_mm = 0;
     bool backwards = false;
     double extend_start_mm = 0;

@@ -148,10 +148,11 @@ bool holds(const Samples& samples, const std::vector<TorchPose>& poses, const Li
     return true;
 }
 
-std::vector<double> equal_steps(double length, std::size_t moves) {
+std::vector<double> equal_steps(double from, double to, std::size_t moves) {
     std::vector<double> stations;
     for (std::size_t k = 0; k <= moves; ++k) {
-        stations.push_back(k == moves ? length : length * static_cast<double>(k) / static_cast<double>(moves));
+        const double way = (to - from) * static_cast<double>(k) / static_cast<double>(moves);
+        stations.push_back(k == moves ? to : from + way);
     }
     return stations;
 }
@@ -180,17 +181,18 @@ std::vector<double> spread(const Passes& passes) {
     return stations;
 }
 
+// Of the seam, or of what lies between two of its corners.
 std::vector<TorchPose> choose(const TorchPath& path, const Samples& samples, const Limits& limits) {
-    const double length = path.arc().length();
+    const double first = samples.pose.front().station_mm, last = samples.pose.back().station_mm;
     Passes passes = greedy(path, samples, limits);
-    if (passes.forward.back() < length || passes.backward.front() > 0) {
-        const double jump = passes.forward.back() < length ? passes.forward.back() : passes.backward.front();
+    if (passes.forward.back() < last || passes.backward.front() > first) {
+        const double jump = passes.forward.back() < last ? passes.forward.back() : passes.backward.front();
         throw InputError(seam_text(path.seam()) + ": the torch direction jumps at station " + number(jump) +
                          " mm, so no move holds plan.max_turn_deg = " + number(limits.turn / kDegree) +
                          "; a smooth curve and smooth flanks are needed; look at the seam there");
     }
     const std::size_t moves = passes.moves();
-    std::vector<TorchPose> poses = poses_at(path, equal_steps(length, moves));
+    std::vector<TorchPose> poses = poses_at(path, equal_steps(first, last, moves));
     if (holds(samples, poses, limits)) {
         return poses;
     }
@@ -201,7 +203,7 @@ std::vector<TorchPose> choose(const TorchPath& path, const Samples& samples, con
         const double share = 0.5 * (few + many);
         Passes tighter = greedy(path, samples, {share * limits.chord_mm, share * limits.turn});
         const bool enough = tighter.forward.size() <= moves + 1 && tighter.backward.size() <= moves + 1 &&
-                            tighter.forward.back() == length && tighter.backward.front() == 0;
+                            tighter.forward.back() == last && tighter.backward.front() == first;
         (enough ? few : many) = share;
         if (enough) {
             passes = std::move(tighter);
@@ -241,7 +243,31 @@ std::vector<double> asked_stations(const TorchPath& path, const SpeedProfile& pr
         }
     }
     stations.push_back(end);
+    for (const double corner : path.corners()) {
+        const auto above = std::lower_bound(stations.begin(), stations.end(), corner);
+        if (!options.period_s && std::min(*above - corner, corner - *(above - 1)) > kMinStep_mm) {
+            stations.insert(above, corner);
+        }
+    }
     return stations;
+}
+
+// What lies between corners, both ends included.
+std::vector<Samples> between_corners(const TorchPath& path, const Samples& samples) {
+    std::vector<Samples> parts(1);
+    const std::vector<double> corners = path.corners();
+    for (std::size_t i = 0; i < samples.pose.size(); ++i) {
+        const TorchPose& pose = samples.pose[i];
+        parts.back().pose.push_back(pose);
+        if (std::any_of(corners.begin(), corners.end(),
+                        [&](double corner) { return std::abs(corner - pose.station_mm) < kMinStep_mm; })) {
+            parts.emplace_back().pose.push_back(pose);
+        }
+        if (i < samples.bulge_mm.size()) {
+            parts.back().bulge_mm.push_back(samples.bulge_mm[i]);
+        }
+    }
+    return parts;
 }
 
 // And where the speed changes.
@@ -265,8 +291,12 @@ WeldPoses weld_poses(const TorchPath& path, const Samples& samples, const SpeedP
     if (options.period_s || options.step_mm || options.at_knots) {
         result.poses = poses_at(path, asked_stations(path, profile, options));
     } else {
-        result.poses = with_changes(
-            path, profile, choose(path, samples, {options.chord_tolerance_mm, options.max_turn_deg * kDegree}));
+        const Limits limits{options.chord_tolerance_mm, options.max_turn_deg * kDegree};
+        for (const Samples& part : between_corners(path, samples)) {
+            const std::vector<TorchPose> poses = choose(path, part, limits);
+            result.poses.insert(result.poses.end(), poses.begin() + (result.poses.empty() ? 0 : 1), poses.end());
+        }
+        result.poses = with_changes(path, profile, std::move(result.poses));
     }
     for (std::size_t k = 0; k + 1 < result.poses.size(); ++k) {
         result.max_chord_error_mm =

@@ -22,7 +22,8 @@ struct WeldPoses {
 /// Greedy from the start gives f_k, the furthest station that k moves reach, and greedy from the end b_k, the first
 /// station from which N - k moves reach the end. Where N equal steps do not hold, the limits are tightened as far as N
 /// moves allow, and station f_k - (f_k - b_k) k / N spreads what slack is left: the same waypoints whichever end the
-/// seam starts from. Where the speed changes, some more are put in (SpeedProfile::changes()). The curve under each
+/// seam starts from. Where the speed changes, some more are put in (SpeedProfile::changes()). A corner has a waypoint
+/// unless times are equal, and those between two corners are chosen as if there was nothing else. The curve under each
 /// chord is held by samples so close that a bound of what lies between them
 /// (|c''| du^2 / 8) is small, and is added to their distance.
 /// Throws InputError where the torch direction jumps, so that no move is short enough.

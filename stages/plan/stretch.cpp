@@ -20,6 +20,15 @@ SeamModel turned_round(SeamModel model) {
         std::swap(flank.n1, flank.n2);
         flank.station_mm = model.length_mm - flank.station_mm;
     }
+    std::reverse(model.corners_mm.begin(), model.corners_mm.end());
+    for (double& corner : model.corners_mm) {
+        corner = model.length_mm - corner;
+    }
+    if (model.closed && !model.corners_mm.empty()) {  // the last is the first, where samples stand for either side
+        model.corners_mm.pop_back();
+        model.corners_mm.insert(model.corners_mm.begin(), 0);
+        return model;
+    }
     // The sample at a closed seam's start would stand at its end.
     if (model.closed && model.flanks.back().station_mm >= model.length_mm) {
         model.flanks.back().station_mm = 0;
@@ -44,6 +53,7 @@ SeamModel between(const SeamModel& model, double from, double to, double before 
     part.curve = part_of(model.curve, parameter(from), parameter(to), before, behind);
     part.length_mm = ArcLength(part.curve).length();
     part.flanks.clear();
+    part.corners_mm.clear();
     const auto add = [&](double station, double at) {
         part.flanks.push_back(flanks_at(model, station));
         part.flanks.back().station_mm = at;
@@ -58,9 +68,30 @@ SeamModel between(const SeamModel& model, double from, double to, double before 
                 part.flanks.back().station_mm = before + station - from;
             }
         }
+        for (const double corner : model.corners_mm) {
+            const double station = corner + round * arc.length();
+            if (station > from && station < to) {
+                part.corners_mm.push_back(before + station - from);
+            }
+        }
     }
     add(to, before + to - from);
     return part;
+}
+
+// Where a closed seam's weld begins when nothing else was asked for: not in a corner, but where it is furthest from
+// one.
+double usual_start(const SeamModel& way) {
+    double start = 0, longest = 0;
+    for (std::size_t k = 0; k < way.corners_mm.size(); ++k) {
+        const double from = way.corners_mm[k];
+        const double to = k + 1 < way.corners_mm.size() ? way.corners_mm[k + 1] : way.length_mm;
+        if (to - from > longest) {
+            longest = to - from;
+            start = 0.5 * (from + to);
+        }
+    }
+    return start;
 }
 
 [[noreturn]] void refuse(int seam, const std::string& what) {
@@ -99,7 +130,8 @@ SeamModel whole_way(const SeamModel& model, int seam, const PlanOptions& o) {
                              " mm long; plan.start_station_mm = " + number(o.start_station_mm) +
                              " and plan.overlap_mm = " + number(o.overlap_mm) + " must be less than that");
         }
-        const double start = o.backwards && o.start_station_mm > 0 ? length - o.start_station_mm : o.start_station_mm;
+        const double asked = o.backwards && o.start_station_mm > 0 ? length - o.start_station_mm : o.start_station_mm;
+        const double start = asked > 0 ? asked : usual_start(way);
         return start == 0 && o.overlap_mm == 0 ? way : between(way, start, start + length + o.overlap_mm);
     }
     const double from = std::max(0.0, -o.extend_start_mm), to = length - std::max(0.0, -o.extend_end_mm);

@@ -23,6 +23,9 @@ constexpr double kMinBisector = 0.05;
 // A seam must be longer than so many chord tolerances, or its shape is within the tolerance of a point.
 constexpr double kMinTolerances = 10;
 
+// Nearer to a corner, mm, rounding decides on which side of it a place is.
+constexpr double kAtCorner_mm = 1e-6;
+
 // Places at which angles along a seam are worked out.
 constexpr int kTiltSteps = 2000;
 
@@ -54,6 +57,7 @@ TorchPath::TorchPath(const SeamModel& model, int seam, const PlanOptions& option
                          " mm, ten times plan.chord_tolerance_mm; lower the tolerance or leave the seam out");
     }
     ensure(std::abs(length - model.length_mm) <= 1e-6 * length, "the model's length is that of its curve");
+    add_turns();
     if (options.tilt_rate_deg_mm) {
         smooth_lean(*options.tilt_rate_deg_mm * kDegree);
     }
@@ -68,12 +72,60 @@ TorchPose TorchPath::at_station(double station_mm) const {
     return at(is_end ? last() : arc_.parameter(station_mm), station_mm);
 }
 
+void TorchPath::add_turns() {
+    const std::vector<double>& corners = model_.corners_mm;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const double at = corners[k], end = arc_.length();
+        if (at < 3 * kAtCorner_mm || at > end - 3 * kAtCorner_mm) {
+            continue;
+        }
+        const double before = k > 0 ? 0.5 * (at - corners[k - 1]) : at;
+        const double behind = k + 1 < corners.size() ? 0.5 * (corners[k + 1] - at) : end - at;
+        const auto side = [&](double station) { return middle_of_flanks({arc_.parameter(station), station}); };
+        turns_.push_back({at, std::min({options_.corner_reach_mm, before, behind}),
+                          side(at - 2 * kAtCorner_mm).conjugate() * side(at + 2 * kAtCorner_mm)});
+    }
+}
+
+std::vector<double> TorchPath::corners() const {
+    std::vector<double> stations;
+    for (const Turn& turn : turns_) {
+        stations.push_back(turn.station_mm);
+    }
+    return stations;
+}
+
+TorchPath::Beside TorchPath::beside(double u, double station_mm) const {
+    for (const Turn& turn : turns_) {
+        if (std::abs(station_mm - turn.station_mm) < kAtCorner_mm) {
+            const double station = turn.station_mm - 2 * kAtCorner_mm;
+            return {arc_.parameter(station), station};
+        }
+    }
+    return {u, station_mm};
+}
+
 Eigen::Quaterniond TorchPath::middle(double u, double station_mm) const {
-    const FlankSample flanks = flanks_at(model_, station_mm);
-    const Vector3d x = tangent(arc_.curve(), u);
+    const Beside at = beside(u, station_mm);
+    const Eigen::Quaterniond q = middle_of_flanks(at);
+    for (const Turn& turn : turns_) {
+        const double off = station_mm - turn.station_mm;
+        if (std::abs(off) < turn.reach_mm) {
+            const double t = 0.5 + 0.5 * off / turn.reach_mm, share = t * t * (3 - 2 * t);
+            const auto none = Eigen::Quaterniond::Identity();
+            return q * (at.station_mm < turn.station_mm ? none.slerp(share, turn.turn)
+                                                        : none.slerp(1 - share, turn.turn.conjugate()));
+        }
+    }
+    return q;
+}
+
+Eigen::Quaterniond TorchPath::middle_of_flanks(const Beside& at) const {
+    const FlankSample flanks = flanks_at(model_, at.station_mm);
+    const Vector3d x = tangent(arc_.curve(), at.u);
     const Vector3d across = square_to(x, flanks.n1 + flanks.n2);
     if (!(across.norm() >= kMinBisector)) {
-        throw InputError(seam_text(seam_) + ": at station " + number(station_mm) +
+        throw InputError(seam_text(seam_) + ": at station " + number(at.station_mm) +
                          " mm the flanks leave the torch no bisector (|n1 + n2| square to travel is " +
                          number(across.norm()) + "); at least " + number(kMinBisector) +
                          " is needed; look at the flank normals of this seam, or leave it out");
@@ -86,8 +138,9 @@ Eigen::Quaterniond TorchPath::middle(double u, double station_mm) const {
 }
 
 double TorchPath::half_opening(double u, double station_mm) const {
-    const FlankSample flanks = flanks_at(model_, station_mm);
-    const Vector3d x = tangent(arc_.curve(), u);
+    const Beside at = beside(u, station_mm);
+    const FlankSample flanks = flanks_at(model_, at.station_mm);
+    const Vector3d x = tangent(arc_.curve(), at.u);
     const Vector3d a = square_to(x, flanks.n1), b = square_to(x, flanks.n2);
     return 0.5 * (0.5 * kTurn - std::atan2(a.cross(b).norm(), a.dot(b)));
 }
@@ -141,7 +194,7 @@ void TorchPath::smooth_lean(double rate) {
     for (int k = 0; k <= kTiltSteps; ++k) {
         stations.push_back(arc_.length() * k / kTiltSteps);
         const TorchPose pose = at_station(stations.back());
-        places.push_back({pose.p, tangent(arc_.curve(), pose.u), pose.q * Vector3d::UnitZ()});
+        places.push_back({pose.p, middle(pose.u, pose.station_mm) * Vector3d::UnitX(), pose.q * Vector3d::UnitZ()});
     }
     const LeanChange change = smoothed(places, stations, rate, model_.closed);
     smooth_work_ = {stations, change.work};

@@ -53,8 +53,12 @@ public:
     TorchPose at_parameter(double u) const { return at(u, arc_.station(u)); }
     TorchPose at_station(double station_mm) const;
 
-    /// +Z is the direction nearest to -(n1 + n2) that is square to travel, +X is along travel.
+    /// +Z is the direction nearest to -(n1 + n2) that is square to travel, +X is along travel. Within
+    /// plan.corner_reach_mm of a corner it turns evenly from what it is on one side to what it is on the other.
     Eigen::Quaterniond middle(double u, double station_mm) const;
+
+    /// Stations of the corners, ascending, without the ends.
+    std::vector<double> corners() const;
 
     /// Half the angle between the flanks, in the section square to travel, rad.
     double half_opening(double u, double station_mm) const;
@@ -66,6 +70,20 @@ public:
     void hold_aside(AngleTable work, AngleTable roll);
 
 private:
+    /// A corner, and how the middle between the flanks turns in it.
+    struct Turn {
+        double station_mm;
+        double reach_mm;
+        Eigen::Quaterniond turn;
+    };
+    /// Where flanks and tangent are those of one side: off a corner.
+    struct Beside {
+        double u, station_mm;
+    };
+
+    void add_turns();
+    Beside beside(double u, double station_mm) const;
+    Eigen::Quaterniond middle_of_flanks(const Beside& at) const;
     TorchPose at(double u, double station_mm) const;
     Lean asked_lean(double u, double station_mm) const;
     void smooth_lean(double rate);
@@ -76,6 +94,7 @@ private:
     ArcLength arc_;
     int seam_;
     double before_mm_;
+    std::vector<Turn> turns_;
     AngleTable smooth_work_, smooth_travel_, aside_work_, aside_roll_, least_roll_;
 };
 

@@ -253,6 +253,10 @@ SeamWelds welds_of(const SeamModel& model, int seam, const PlanOptions& options,
     const SeamModel way = whole_way(model, seam, options);
     if (options.groove == GrooveForm::none) {
         add_welds(way, seam, options, clearance, result);
+    } else if (!model.corners_mm.empty()) {
+        throw InputError(seam_text(seam) + " has " + std::to_string(model.corners_mm.size()) +
+                         " corners, and plan.groove asks for several passes, which need a smooth seam; set "
+                         "extract.join_at_corners to false");
     } else {
         for (const Pass& pass : passes_of(way, seam, options)) {
             add_welds(pass.model, seam, options, clearance, result);

@@ -9,6 +9,7 @@
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/parallel.hpp"
 #include "stages/geometry/robust.hpp"
+#include "stages/geometry/seam_pieces.hpp"
 #include "stages/geometry/step_height.hpp"
 #include "stages/geometry/views.hpp"
 #include "stages/text.hpp"
@@ -112,35 +113,28 @@ std::optional<double> wall_height(const Ground& ground, const SeamModel& model, 
     return heights.empty() ? std::nullopt : std::optional(quantile(heights, 0.5));
 }
 
-}  // namespace
+/// What all pieces of a seam are measured against.
+struct Measuring {
+    const Scan& scan;
+    const ScaleField& field;
+    const std::vector<std::size_t>& views;
+    const ValidateOptions& options;
+};
 
-Fields describe(ValidateOptions& o) {
-    return {
-        {"tolerance_mm", &o.tolerance_mm,
-         "largest deviation that passes; 0: 3 sigmas of the scan's noise, at least 0.1 mm", at_least(0)},
-        {"min_coverage", &o.min_coverage, "least share of the seam that must be measured, not bridged", within(0, 1)}};
-}
-
-Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options) {
-    const ScaleField field = estimate_scale(scan.points);
-    if (field.overall.spacing <= 0) {
-        throw InputError("validate: the scan has " + std::to_string(scan.points.size()) +
-                         " points; surfaces were needed; use the scan that the seam came from");
-    }
+// Samples along a model without corners, and its tolerance.
+Deviation measure(const Measuring& by, const SeamModel& model) {
     const ArcLength arc(model.curve);
-    const ScanScale scale = scale_along(field, arc, scan.origin_mm);
+    const ScanScale scale = scale_along(by.field, arc, by.scan.origin_mm);
     const SectionWindow window = measuring_window(scale);
     const double reach = model.kind == JointKind::v_groove ? kGrooveReach : 1.3 * window.away;
-    const PointGrid grid = grid_near(scan, arc, reach);
+    const PointGrid grid = grid_near(by.scan, arc, reach);
     const auto count =
         std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(arc.length() / (4 * scale.spacing))));
     Deviation result;
-    result.tolerance_mm = options.tolerance_mm > 0 ? options.tolerance_mm
-                                                   : std::max(kLeastTolerance, detail::kNoiseTolerance * scale.noise);
+    const double asked = by.options.tolerance_mm;
+    result.tolerance_mm = asked > 0 ? asked : std::max(kLeastTolerance, detail::kNoiseTolerance * scale.noise);
     result.samples.resize(count);
-    // An organised cloud is one view.
-    const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
-    const Ground ground{scan.origin_mm, grid, views, scale, window};
+    const Ground ground{by.scan.origin_mm, grid, by.views, scale, window};
     std::vector<double> density[2];
     density[0].assign(count, 0);
     density[1].assign(count, 0);
@@ -150,7 +144,7 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
         sample.p = position(model.curve, arc.parameter(sample.station_mm));
     }
     if (model.kind == JointKind::v_groove) {
-        detail::measure_groove_samples(model, arc, scan.origin_mm, grid, views, scale, result.samples, density);
+        detail::measure_groove_samples(model, arc, by.scan.origin_mm, grid, by.views, scale, result.samples, density);
     } else if (model.kind == JointKind::butt) {
         parallel_for(count, 4, [&](std::size_t i) {
             const auto seen = measure_butt(ground, model, arc, result.samples[i]);
@@ -161,7 +155,7 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
         const std::optional<double> wall =
             model.kind == JointKind::lap ? wall_height(ground, model, arc) : std::nullopt;
         const double noise = detail::measure_flank_samples(ground, model, wall, result.samples, density);
-        if (options.tolerance_mm == 0 && noise > 0) {
+        if (asked == 0 && noise > 0) {
             result.tolerance_mm = std::max(kLeastTolerance, detail::kNoiseTolerance * std::min(noise, scale.noise));
         }
     }
@@ -181,6 +175,41 @@ Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptio
         const double least = kLeastDensity * quantile(sorted, 0.5);
         for (std::size_t i = 0; i < count; ++i) {
             result.samples[i].covered = result.samples[i].covered && d[i] > least;
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+Fields describe(ValidateOptions& o) {
+    return {
+        {"tolerance_mm", &o.tolerance_mm,
+         "largest deviation that passes; 0: 3 sigmas of the scan's noise, at least 0.1 mm", at_least(0)},
+        {"min_coverage", &o.min_coverage, "least share of the seam that must be measured, not bridged", within(0, 1)}};
+}
+
+Deviation validate(const SeamModel& model, const Scan& scan, const ValidateOptions& options) {
+    const ScaleField field = estimate_scale(scan.points);
+    if (field.overall.spacing <= 0) {
+        throw InputError("validate: the scan has " + std::to_string(scan.points.size()) +
+                         " points; surfaces were needed; use the scan that the seam came from");
+    }
+    // An organised cloud is one view.
+    const std::vector<std::size_t> views = scan.pixel.empty() ? view_starts(scan.points) : std::vector<std::size_t>{0};
+    const Measuring by{scan, field, views, options};
+    Deviation result;
+    if (model.corners_mm.empty()) {
+        result = measure(by, model);
+    } else {
+        for (const ModelPiece& piece : pieces_of(model)) {
+            const Deviation own = measure(by, piece.model);
+            result.tolerance_mm =
+                result.samples.empty() ? own.tolerance_mm : std::min(result.tolerance_mm, own.tolerance_mm);
+            for (DeviationSample sample : own.samples) {
+                sample.station_mm += piece.from_mm;
+                result.samples.push_back(sample);
+            }
         }
     }
     detail::summarise(result, options);

@@ -25,4 +25,8 @@ Deviation validate(const SeamModel& model, const PhotoView& view, const Validate
 /// samples (ISO 14253-1), mm.
 double guard_mm(const Deviation& deviation);
 
+/// Whether the tolerance is one that nobody asked for, only what the scan's noise allows, and wider than the welds of
+/// thin plates can bear.
+bool wide_by_noise(const Deviation& deviation, const ValidateOptions& options);
+
 }  // namespace seampath

@@ -26,6 +26,10 @@ double guard_mm(const Deviation& deviation) {
     return detail::kGuard * quantile(sigma, 0.5);
 }
 
+bool wide_by_noise(const Deviation& deviation, const ValidateOptions& options) {
+    return options.tolerance_mm == 0 && deviation.tolerance_mm > detail::kWide;
+}
+
 }  // namespace seampath
 
 namespace seampath::detail {
@@ -58,7 +62,7 @@ void summarise(Deviation& result, const ValidateOptions& options) {
                      fixed(result.tolerance_mm, 3) + " mm; " + fixed(100 * result.coverage, 1) +
                      " % of the seam measured" +
                      (covered ? "" : ", less than " + fixed(100 * options.min_coverage, 1) + " %");
-    if (options.tolerance_mm == 0 && result.tolerance_mm > kWide) {
+    if (wide_by_noise(result, options)) {
         result.verdict += "; the tolerance is only what the scan's noise of " +
                           fixed(result.tolerance_mm / kNoiseTolerance, 2) +
                           " mm allows: set validate.tolerance_mm to what the weld needs";

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/extract/support.hpp"
+#include "tests/geometry/boxes.hpp"
 
 /// Joints that meet: where three surfaces come together, seams end.
 namespace seampath {
@@ -43,6 +44,61 @@ TEST(Meeting, ThreePlanesGiveThreeSeamsThatEndInTheirCorner) {
     expect_on_axis(seam_at(extraction.seams, {40, 0, 0}), 0, 80);
     expect_on_axis(seam_at(extraction.seams, {0, 30, 0}), 1, 60);
     expect_on_axis(seam_at(extraction.seams, {0, 0, 22}), 2, 45);
+}
+
+TEST(Meeting, FilletsThatGoOnRoundCornersAreOneSeam) {
+    SharpBox box = tilted_box();
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        box.length = 60 + 25.0 * static_cast<double>(seed);
+        const Extraction extraction = extract(box.scan(0.045, seed), {});
+        ASSERT_EQ(extraction.seams.size(), 1u) << seed;
+        const Seam& seam = extraction.seams.front();
+        EXPECT_TRUE(seam.closed);
+        ASSERT_EQ(seam.corners.size(), 4u);
+        EXPECT_EQ(seam.corners.front(), 0u);
+        for (const Vector3d& corner : box.corners()) {
+            double nearest = 1e9;
+            for (const std::size_t k : seam.corners) {
+                nearest = std::min(nearest, (seam.points[k].p - corner).norm());
+            }
+            EXPECT_LT(nearest, 0.06) << seed;
+        }
+        const std::size_t n = seam.points.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            const SeamPoint &at = seam.points[i], &next = seam.points[(i + 1) % n];
+            EXPECT_LT(box.distance(at.p), 0.1);
+            EXPECT_GT((next.p - at.p).dot(at.n1.cross(at.n2)), 0) << i;
+            EXPECT_LT((next.p - at.p).norm(), 3) << i;
+        }
+    }
+}
+
+TEST(Meeting, FilletsRoundCornersStayApartWhenAskedFor) {
+    ExtractOptions options;
+    options.join_at_corners = false;
+    const Extraction extraction = extract(tilted_box().scan(0.045, 1), options);
+    EXPECT_EQ(extraction.seams.size(), 4u);
+    for (const Seam& seam : extraction.seams) {
+        EXPECT_FALSE(seam.closed);
+        EXPECT_TRUE(seam.corners.empty());
+    }
+}
+
+TEST(Meeting, TwoSidesRoundOneCornerAreAnOpenSeam) {
+    // The far half of the box is out of sight.
+    const SharpBox box = tilted_box();
+    Scan scan = box.scan(0.045, 4);
+    std::erase_if(scan.points, [&](const Eigen::Vector3f& p) {
+        const Vector3d q = box.pose.inverse() * p.cast<double>();
+        return q.x() / box.length + q.y() / box.width > 1;
+    });
+    const Extraction extraction = extract(scan, {});
+    ASSERT_EQ(extraction.seams.size(), 1u);
+    const Seam& seam = extraction.seams.front();
+    EXPECT_FALSE(seam.closed);
+    ASSERT_EQ(seam.corners.size(), 1u);
+    EXPECT_LT((seam.points[seam.corners[0]].p - box.corners()[0]).norm(), 0.06);
+    EXPECT_NEAR(length_of(seam), box.length + box.width, 4);
 }
 
 TEST(Meeting, AStiffenerAcrossAJointEndsItOnBothSides) {

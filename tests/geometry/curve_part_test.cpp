@@ -76,5 +76,29 @@ TEST(CurvePart, GoesStraightOnAtItsEnds) {
     EXPECT_NEAR(ArcLength(part).length(), 17 + ArcLength(curve).station(to) - ArcLength(curve).station(from), 1e-9);
 }
 
+TEST(CurvePart, PartsJoinToTheSameCurveAgain) {
+    const CubicBSpline open = open_curve(), closed = ring();
+    for (const CubicBSpline& curve : {open, closed}) {
+        const double first = first_parameter(curve), length = last_parameter(curve) - first;
+        std::vector<CubicBSpline> parts;
+        const double at[] = {0, 0.13, 0.5, 0.77, 1};
+        for (std::size_t k = 0; k < 4; ++k) {
+            parts.push_back(part_of(curve, first + at[k] * length, first + at[k + 1] * length));
+        }
+        const CubicBSpline whole = joined(parts, curve.periodic);
+        EXPECT_EQ(whole.periodic, curve.periodic);
+        for (int k = 1; k < 1000; ++k) {
+            const double u = first + length * k / 1000;
+            EXPECT_LT((position(whole, u) - position(curve, u)).norm(), 1e-9) << k;
+            EXPECT_LT((derivative(whole, u) - derivative(curve, u)).norm(), 1e-9) << k;
+        }
+        std::size_t corners = 0;
+        for (const CurveKnot& knot : knots_of(whole)) {
+            corners += knot.continuity == 0;
+        }
+        EXPECT_EQ(corners, curve.periodic ? 4u : 3u);
+    }
+}
+
 }  // namespace curve_part_test
 }  // namespace seampath

@@ -56,7 +56,8 @@ Extraction random_extraction(Numbers& n) {
     Extraction e;
     e.seams.resize(n.below(4));
     for (auto& seam : e.seams) {
-        seam = {static_cast<JointKind>(n.below(6)), n.flip(), n.any(), "two surfaces\n", {}, {}, {}};
+        seam = {static_cast<JointKind>(n.below(6)),     n.flip(), n.any(), "two surfaces\n", {}, {}, {},
+                {static_cast<std::size_t>(n.below(50))}};
         if (n.flip()) {
             seam.surfaces = {random_surface(n), random_surface(n), {n.any(), n.any(), n.any()}};
         }
@@ -87,6 +88,7 @@ SeamModel random_model(Numbers& n) {
     model.model = "saddle";
     model.reason = "both pipes are \"round\"";
     model.band = {{n.any(), n.any()}};
+    model.corners_mm = {n.any(), n.any()};
     if (n.flip()) {
         const Measured estimate{n.any(), n.any()};
         model.saddle = {static_cast<SurfaceShape>(n.below(4)), estimate, {}, Measured{n.any(), n.any()}, estimate};

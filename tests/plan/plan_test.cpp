@@ -400,7 +400,7 @@ TEST(Plan, RefusesASeamWithinAFewTolerances) {
 TEST(Plan, OptionsHaveBoundsAndMeanings) {
     PlanOptions options;
     const Fields fields = describe(options);
-    EXPECT_EQ(fields.size(), 68u);
+    EXPECT_EQ(fields.size(), 69u);
     for (const Field& field : fields) {
         EXPECT_FALSE(field.meaning.empty()) << field.key;
         std::vector<double> values;

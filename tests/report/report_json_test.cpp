@@ -44,6 +44,15 @@ TEST(ReportJson, GivesTheVerdictOfThePartAndOfEachSeam) {
     EXPECT_EQ(find(failed.at("seams")[1].at("rows"), "in_tolerance").at("verdict"), "fail");
 }
 
+TEST(ReportJson, SaysUpFrontThatAToleranceIsOnlyByNoise) {
+    PartResult part = example_part();
+    part.deviations[0].tolerance_mm = 4.2;
+    const auto sentence = [&] { return Json::parse(report_json(part)).at("sentence").get<std::string>(); };
+    EXPECT_NE(sentence().find("a tolerance of 4.20 mm is only what the scan's noise allows"), std::string::npos);
+    part.config.validate.tolerance_mm = 4.2;
+    EXPECT_EQ(sentence().find("noise"), std::string::npos) << "asked for";
+}
+
 TEST(ReportJson, NamesScanSettingsAndBuildByTheirHashes) {
     PartResult part = example_part();
     part.origin = {"tee.ply", std::string(64, 'a'), "2026-03-31 14:05 UTC"};

@@ -7,6 +7,7 @@
 #include "stages/fit/fit.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/place/place.hpp"
+#include "tests/geometry/boxes.hpp"
 #include "tests/geometry/clouds.hpp"
 #include "tests/geometry/curves.hpp"
 
@@ -206,6 +207,30 @@ TEST(Validate, RefusesAScanWithoutSurfaces) {
             validate(wedge_model(kPi / 2, {0, 0, 0}), scan_of_points({{1, 2, 3}, {4, 5, 6}}), {});
         },
         testing::ThrowsMessage<InputError>(StartsWith("validate: the scan has 2 points")));
+}
+
+TEST(Validate, MeasuresEachSideOfACornerByItsOwnFlanks) {
+    const SharpBox box = tilted_box();
+    const Scan scan = box.scan(0.03, 5);
+    Seam seam = box.seam(1, 0, 1);
+    const Vector3d up = seam.points.front().n1;
+    for (const double raised : {0.0, 0.3}) {
+        Seam moved = seam;
+        for (SeamPoint& point : moved.points) {
+            point.p += raised * up;
+        }
+        const Deviation d = validate(fit(moved, place(moved, {}), {}), scan, {});
+        EXPECT_GT(d.coverage, 0.98);
+        EXPECT_EQ(d.pass, raised == 0) << d.verdict;
+        for (std::size_t k = 1; k < d.samples.size(); ++k) {
+            EXPECT_GT(d.samples[k].station_mm, d.samples[k - 1].station_mm);
+        }
+        for (const DeviationSample& s : d.samples) {
+            if (s.covered) {
+                EXPECT_NEAR(s.distance_mm, raised, 0.03) << s.station_mm;
+            }
+        }
+    }
 }
 
 }  // namespace validate_test
