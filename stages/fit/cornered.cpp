@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string>
 
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
@@ -79,9 +78,6 @@ SeamModel join_pieces(const Seam& seam, std::vector<SeamModel> pieces) {
     model.kind = seam.kind;
     model.closed = seam.closed;
     model.model = pieces.front().model;
-    model.reason = std::to_string(seam.corners.size()) + (seam.corners.size() == 1 ? " corner" : " corners") +
-                   " between " + std::to_string(pieces.size()) +
-                   (pieces.size() == 1 ? " smooth piece" : " smooth pieces") + "; of each: " + pieces.front().reason;
     std::vector<CubicBSpline> curves;
     double squares = 0, points = 0;
     for (std::size_t k = 0; k < pieces.size(); ++k) {

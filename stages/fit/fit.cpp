@@ -152,9 +152,11 @@ SeamModel fit_round_corners(const Seam& seam, const Nodes& nodes, FitOptions opt
         throw InputError("fit: fit.model saddle can't serve a seam with " + std::to_string(seam.corners.size()) +
                          " corners; set fit.model to auto or spline");
     }
+    std::string reason = "fit.model asks for it";
     if (options.model == FitModel::automatic) {
         options = {};
         options.model = FitModel::spline;
+        reason = "no saddle: the seam has corners";
     }
     const std::vector<SeamPiece> pieces = pieces_of(seam);
     const std::vector<Nodes> own =
@@ -163,7 +165,10 @@ SeamModel fit_round_corners(const Seam& seam, const Nodes& nodes, FitOptions opt
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         models.push_back(fit(pieces[k].seam, own[k], options));
     }
-    return join_pieces(seam, std::move(models));
+    SeamModel model = join_pieces(seam, std::move(models));
+    model.reason = reason + "; " + std::to_string(pieces.size()) + " smooth pieces that meet in " +
+                   std::to_string(seam.corners.size()) + " corners";
+    return model;
 }
 
 }  // namespace
