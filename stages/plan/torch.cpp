@@ -107,7 +107,7 @@ TorchPath::Beside TorchPath::beside(double u, double station_mm) const {
 
 Eigen::Quaterniond TorchPath::middle(double u, double station_mm) const {
     const Beside at = beside(u, station_mm);
-    const Eigen::Quaterniond q = middle_of_flanks(at);
+    Eigen::Quaterniond q = middle_of_flanks(at);
     for (const Turn& turn : turns_) {
         const double off = station_mm - turn.station_mm;
         if (std::abs(off) < turn.reach_mm) {

@@ -60,7 +60,8 @@ struct SharpBox {
         seam.closed = true;
         std::uint64_t draw = 0;
         for (std::size_t side = 0; side < 4; ++side) {
-            const Eigen::Vector3d from = corner[side], way = corner[(side + 1) % 4] - from;
+            const Eigen::Vector3d& from = corner[side];
+            const Eigen::Vector3d way = corner[(side + 1) % 4] - from;
             const Eigen::Vector3d out = way.cross(up).normalized();
             const auto steps = static_cast<int>(std::lround(way.norm() / spacing));
             for (int k = 0; k < steps; ++k) {
