@@ -27,7 +27,8 @@ using namespace detail;
 
 constexpr std::size_t kLeastScanPoints = 200;
 
-// In which ends of seams meet, in distances of their points: each ends within one of them before a corner.
+// In which ends of seams meet, in distances that points of seams have unless asked for otherwise: each ends within one
+// of them before a corner.
 constexpr double kCornerReach = 1.5;
 
 // Distance of the points of a seam: as fine as the scan's points allow.
@@ -251,7 +252,7 @@ Extraction extract(const Scan& scan, const ExtractOptions& options) {
         contradict(result, options.joint, extract(scan, automatic).seams);
     }
     if (options.join_at_corners) {
-        join_at_corners(result.seams, kCornerReach * following.step);
+        join_at_corners(result.seams, kCornerReach * station_distance(scale, scan.points.size()));
     }
     std::stable_sort(result.seams.begin(), result.seams.end(),
                      [](const Seam& a, const Seam& b) { return a.points.size() > b.points.size(); });

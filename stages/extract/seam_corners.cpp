@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "stages/angle.hpp"
+#include "stages/geometry/lines.hpp"
 #include "stages/text.hpp"
 
 namespace seampath::detail {
@@ -61,15 +62,13 @@ std::optional<Meeting> meeting(const End& a, const End& b, double reach) {
     if (turn < kLeastCorner || turn > kMostCorner || !same_flank(a.at, b.at)) {
         return std::nullopt;
     }
-    const Vector3d apart = b.at.p - a.at.p, n = a.out.cross(b.out);
-    const double along_a = apart.cross(b.out).dot(n) / n.squaredNorm();
-    const double along_b = apart.cross(a.out).dot(n) / n.squaredNorm();
+    const auto [along_a, along_b, corner] = nearest_of_lines(a.at.p, a.out, b.at.p, b.out);
+    const double passing = std::abs((b.at.p - a.at.p).dot(a.out.cross(b.out).normalized()));
     const double sigma = std::hypot(a.at.sigma_mm, b.at.sigma_mm);
     if (std::max(std::abs(along_a), std::abs(along_b)) > reach ||
-        std::abs(apart.dot(n.normalized())) > kMostSigmas * sigma + kMostPassing * reach) {
+        passing > kMostSigmas * sigma + kMostPassing * reach) {
         return std::nullopt;
     }
-    const Vector3d corner = 0.5 * (a.at.p + along_a * a.out + b.at.p + along_b * b.out);
     const double way = std::max({0.0, along_a, along_b});
     return Meeting{0, 0, corner, std::hypot(std::max(a.at.sigma_mm, b.at.sigma_mm), kSigmaOfWay * way), turn};
 }

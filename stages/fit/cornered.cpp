@@ -7,6 +7,7 @@
 #include "stages/error.hpp"
 #include "stages/geometry/bspline.hpp"
 #include "stages/geometry/curve_part.hpp"
+#include "stages/geometry/lines.hpp"
 
 namespace seampath {
 namespace {
@@ -26,14 +27,9 @@ void meet(CubicBSpline& a, CubicBSpline& b) {
         b.control.front() = p;
         return;
     }
-    const Vector3d s = tangent(a, last_parameter(a)), t = tangent(b, first_parameter(b)), n = s.cross(t);
-    Vector3d corner = p + 0.5 * apart;
-    if (n.norm() > kLeastSine) {
-        const double along_a = apart.cross(t).dot(n) / n.squaredNorm(),
-                     along_b = apart.cross(s).dot(n) / n.squaredNorm();
-        corner = 0.5 * (p + along_a * s + q + along_b * t);
-    }
-    a.control.back() = b.control.front() = corner;
+    const Vector3d s = tangent(a, last_parameter(a)), t = tangent(b, first_parameter(b));
+    const bool turns = s.cross(t).norm() > kLeastSine;
+    a.control.back() = b.control.front() = turns ? nearest_of_lines(p, s, q, t).middle : Vector3d(p + 0.5 * apart);
 }
 
 }  // namespace
