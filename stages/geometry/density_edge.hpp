@@ -18,9 +18,9 @@ struct DensityEdge {
 /// points' 1-sigma along the coordinate, mm. The end is not the last point, which strays and noise move: the points'
 /// number is taken for a Poisson process of intensity
 ///     lambda(x) = lambda Phi((e - x) / b) + lambda_0,
-/// of which e, b and lambda are the likeliest. Its sigma is from the process's Fisher information, and holds what b has
-/// beyond the noise: a soft end may be a shadow's, that lies before the surface's own. Empty when there are too few
-/// points about `from`.
+/// whose lambda_0 may be that of another face beyond the end, seen at a glance. It is the mean of the posterior over e,
+/// b and lambda_0, and so is its sigma, which also holds what b has beyond the noise: a soft end may be a shadow's,
+/// that lies before the surface's own. Empty when there are too few points about `from`.
 std::optional<DensityEdge> density_edge(std::vector<double> x, double from, double bin, double noise);
 
 }  // namespace seampath

@@ -58,6 +58,7 @@ struct BevelLevel {
     double depth = 0, variance = 0;
     double scatter = 0;  ///< mm, of the depths that it is the middle of
     double share = 0;    ///< of the places, that saw it
+    double turned = 0;   ///< of those, the share that saw the root face below it
     std::vector<double> views;
 
     bool holds(const BevelDepth& seen) const {
@@ -65,18 +66,10 @@ struct BevelLevel {
     }
 };
 
-std::optional<BevelLevel> level_of(std::span<const GrooveFit> fits, std::size_t k, double step, double window) {
-    std::vector<double> depths;
-    for (const GrooveFit& fit : fits) {
-        if (fit.seen[k]) {
-            depths.push_back(fit.seen[k]->depth);
-        }
-    }
-    if (depths.empty()) {
-        return std::nullopt;
-    }
+// About the depth `start`.
+BevelLevel level_about(double start, std::span<const GrooveFit> fits, std::size_t k, double step, double window) {
     BevelLevel level;
-    level.depth = quantile(depths, kDeep);
+    level.depth = start;
     for (int round = 0; round < 4; ++round) {
         std::vector<double> near, off;
         for (const GrooveFit& fit : fits) {
@@ -103,13 +96,35 @@ std::optional<BevelLevel> level_of(std::span<const GrooveFit> fits, std::size_t 
             for (std::size_t v = 0; v < fit.seen[k]->share.size(); ++v) {
                 level.views[v] += fit.seen[k]->share[v];
             }
+            level.turned += fit.seen[k]->turns;
             count += 1;
         }
     }
+    level.turned /= std::max(1.0, count);
     for (double& share : level.views) {
         share /= std::max(1.0, count);
     }
     return level;
+}
+
+// The deepest that enough places agree on: what few see deeper, and most as surely less deep, are strays below the end.
+std::optional<BevelLevel> level_of(std::span<const GrooveFit> fits, std::size_t k, double step, double window) {
+    constexpr double kMost = 2.5;  // over the places of the deepest
+    constexpr double kAsSure = 3;  // in scatter
+    std::vector<double> depths;
+    for (const GrooveFit& fit : fits) {
+        if (fit.seen[k]) {
+            depths.push_back(fit.seen[k]->depth);
+        }
+    }
+    if (depths.empty()) {
+        return std::nullopt;
+    }
+    const BevelLevel deepest = level_about(quantile(depths, kDeep), fits, k, step, window),
+                     usual = level_about(quantile(depths, 0.5), fits, k, step, window);
+    return usual.share > kMost * deepest.share && usual.scatter < kAsSure * std::max(deepest.scatter, kLeastScatter)
+               ? usual
+               : deepest;
 }
 
 // What a place keeps of its own: as far as depths scatter by more than noise.
@@ -147,16 +162,20 @@ bool meets(std::span<const GrooveFit> fits, const BevelLevel& level, std::size_t
 // alike, to the same depth below their tops, or where unlike plates lie flush on their roots, to the same height.
 // `higher`: by how much the other top is higher.
 bool is_shadow(const BevelLevel& level, const BevelLevel& other, double higher) {
-    const double sure = kApart * std::sqrt(level.variance + other.variance), less = other.depth - level.depth;
-    return less > sure && std::abs(less - higher) > sure;
+    const double sure = kApart * std::sqrt(level.variance + other.variance) + 2 * kLeastScatter,
+                 less = other.depth - level.depth;
+    return level.turned < 0.5 && less > sure && std::abs(less - higher) > sure;
 }
 
-// Whether a second witness tells of an end: another view, or the other bevel, which ends about as deep.
+// Whether a second witness tells of an end: the root face below it, another view, or the other bevel, which ends about
+// as deep.
 bool confirmed(const BevelLevel& level, const std::optional<BevelLevel>& other) {
     constexpr double kLeastShare = 0.02;  // of a view that is a seventh as sure as the others
     constexpr double kAlike = 0.05;       // of the depth
+    constexpr double kTurned = 0.3;
     const auto views = std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > kLeastShare; });
-    return views > 1 || (other && std::abs(other->depth - level.depth) < kAlike * level.depth);
+    return level.turned > kTurned || views > 1 ||
+           (other && std::abs(other->depth - level.depth) < kAlike * level.depth);
 }
 
 // All of the bevels below what is seen of them may lie in shadow.

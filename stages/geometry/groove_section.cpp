@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "stages/geometry/groove_turn.hpp"
+
 namespace seampath {
 namespace {
 
@@ -187,7 +189,14 @@ struct Work {
         const GrooveFace& face = fit.bevel[side];
         const Gate gate{-kDeepest, face.along(fit.shape.corner[side]), gate_width(), 0.02, from};
         std::vector<std::vector<double>> x;
-        for (const FacePoint& q : points_of(points, face, gate, own(k))) {
+        const auto nearer = own(k);
+        // What lies on the other plate's root face, or behind it, is none of this bevel's.
+        const bool faced = fit.seen[1 - side] && fit.seen[1 - side]->turns;
+        const Vector2d other = fit.shape.end[1 - side], behind = fit.top[1 - side].tangent(0);
+        const auto here = [&](const Vector2d& q) {
+            return nearer(q) && !(faced && (q - other).dot(behind) > -gate_width());
+        };
+        for (const FacePoint& q : points_of(points, face, gate, here)) {
             x.resize(std::max<std::size_t>(x.size(), q.view + 1));
             x[q.view].push_back(-q.u);
         }
@@ -196,6 +205,22 @@ struct Work {
             seen.push_back(density_edge(std::move(of_view), -from, scale.spacing, scale.noise));
         }
         return furthest(seen);
+    }
+
+    void settle_end(std::size_t side, double from) {
+        const auto end = find_end(static_cast<int>(side), from);
+        fit.seen[side] = std::nullopt;
+        if (!end) {
+            return;
+        }
+        const auto& [edge, share] = *end;
+        const Vector2d corner = fit.shape.corner[side], down = fit.bevel[side].at(-edge.at) - corner;
+        const double depth = std::abs(cross(fit.top[side].tangent(0), down));
+        fit.seen[side] = bevel_turn(points, fit, side, corner + down, scale, gate_width())
+                             .value_or(BevelDepth{depth, edge.sigma * depth / down.norm(), {}});
+        fit.shape.end[side] = corner + fit.seen[side]->depth / depth * down;
+        fit.seen[side]->sigma = std::hypot(fit.seen[side]->sigma, std::sqrt(fit.top[side].covariance(0, 0)));
+        fit.seen[side]->share = share;
     }
 
     void set_corners() {
@@ -284,17 +309,7 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
         for (int k = 0; k < 2; ++k) {
             const auto side = static_cast<std::size_t>(k);
             const double corner = fit.bevel[side].along(fit.shape.corner[side]);
-            const auto end = work.find_end(k, corner - 0.6 * (corner - low[side]));
-            fit.seen[side] = std::nullopt;
-            if (end) {
-                const auto& [edge, share] = *end;
-                fit.shape.end[side] = fit.bevel[side].at(-edge.at);
-                const Vector2d top = fit.top[side].tangent(0), down = fit.shape.corner[side] - fit.shape.end[side];
-                const double depth = std::abs(cross(top, down));
-                fit.seen[side] = {
-                    depth, std::hypot(edge.sigma * depth / down.norm(), std::sqrt(fit.top[side].covariance(0, 0))),
-                    share};
-            }
+            work.settle_end(side, corner - 0.6 * (corner - low[side]));
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {

@@ -16,8 +16,9 @@
 #include "stages/types.hpp"
 
 /// The measurement of a groove at one place: the tops and bevels of both plates are fitted as lines or arcs of the
-/// section, corners being left out, and intersected; a bevel's lower end is where its points end. Side 0 is the plate
-/// on the right of travel, with the seam's first flank, side 1 the one on the left.
+/// section, corners being left out, and intersected; a bevel's lower end is where it is seen to turn into the root
+/// face, else where its points end. Side 0 is the plate on the right of travel, with the seam's first flank, side 1 the
+/// one on the left.
 namespace seampath {
 
 /// A side more upright than this has no bevel; rad.
@@ -70,6 +71,7 @@ struct BevelDepth {
     double depth = 0;           ///< mm
     double sigma = 0;           ///< mm, from noise
     std::vector<double> share;  ///< of each view in it
+    bool turns = false;         ///< the surface is seen to turn upright there, into the root face
 };
 
 /// What kind of root a groove has, along all of it.

@@ -122,6 +122,29 @@ TEST_P(DeepGroove, WithoutASecondWitnessIsNotSure) {
     EXPECT_FALSE(validate(fit(seam, place(seam, {}), {}), scan, {}).pass);
 }
 
+// A line profiler that looks down into the groove sees the bevels turn into the root faces: they end there, though the
+// faces' first points still lie close to the bevels' lines, and nothing need confirm it.
+class GrooveWithRootFaces : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Grooves, GrooveWithRootFaces, testing::Values(3, 5, 6, 7, 8),
+                         testing::PrintToStringParamName());
+
+TEST_P(GrooveWithRootFaces, EndsWhereItTurns) {
+    SceneOptions scene;
+    scene.kind = SceneKind::v_groove;
+    scene.length_mm = 14;
+    scene.margin_mm = 8;
+    scene.plate_thickness_mm = 6;
+    ScannerOptions scanner = preset("gocator2440_robot");
+    scanner.views = 3;
+    const Dataset dataset = make_dataset(scene, scanner, GetParam());
+    const Extraction extraction = extract(scan_of(dataset), {});
+    ASSERT_EQ(extraction.seams.size(), 1u);
+    const Score result = score(extraction.seams, dataset.truth);
+    EXPECT_LT(result.rms_mm, 0.06);
+    EXPECT_LT(result.max_mm, 0.1);
+    EXPECT_THAT(extraction.seams.front().kind_reason, testing::Not(testing::HasSubstr("shadow")));
+}
+
 TEST(Grooves, AreNoneInAFillet) {
     SceneOptions o;
     o.length_mm = 60;
