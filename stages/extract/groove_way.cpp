@@ -325,6 +325,9 @@ std::optional<GrooveWay> measure_groove(const Tracker& tracker, const GrooveWay&
         const double in = static_cast<double>(inside) * tracker.step;
         begin = reach(in, -1);
         end = reach(course.length() - in, 1);
+        if (end - begin < static_cast<double>(kFewest) * tracker.step) {
+            return std::nullopt;
+        }
     }
     const auto count =
         std::max<std::size_t>(kFewest, static_cast<std::size_t>(std::lround((end - begin) / tracker.step)));

@@ -112,6 +112,49 @@ bool within(const GrooveWay& way, const Vector3d& p, double reach) {
     return false;
 }
 
+double median(const GrooveWay& way, int number) {
+    std::vector<double> values;
+    for (const GroovePlace& place : way.places) {
+        values.push_back(place.numbers.value[number]);
+    }
+    return quantile(values, 0.5);
+}
+
+// Whether an edge is bevelled, at an angle that is the same all along.
+bool is_bevelled(const GrooveWay& way, int number) {
+    const double angle = median(way, number);
+    std::vector<double> off;
+    for (const GroovePlace& place : way.places) {
+        off.push_back(std::abs(place.numbers.value[number] - angle));
+    }
+    return angle - 1.4826 * quantile(off, 0.5) > kSquareSide;
+}
+
+// Whether the faces that were followed are a groove's: one edge at least is bevelled, none is undercut, and their
+// sections follow each other along a line. Strays between two plates may look like faces, but hardly do that.
+bool is_groove(const GrooveWay& way, double step) {
+    constexpr int kBevel1 = 4, kBevel2 = 5, kDepth = 7;
+    std::vector<double> steps, sigmas;
+    for (std::size_t i = 1; i < way.places.size(); ++i) {
+        const GroovePlace &a = way.places[i - 1], &b = way.places[i];
+        steps.push_back((b.frame.at(b.numbers.root()) - a.frame.at(a.numbers.root())).norm());
+        sigmas.push_back(b.numbers.sigma(0));
+    }
+    return std::min(median(way, kBevel1), median(way, kBevel2)) > -kSquareSide &&
+           (is_bevelled(way, kBevel1) || is_bevelled(way, kBevel2)) && quantile(steps, 0.5) < 3 * step &&
+           quantile(sigmas, 0.5) < median(way, kDepth);
+}
+
+// The known way that runs along the same groove, which one seed may follow further than another; `ways.end()` if none.
+auto same_groove(std::vector<GrooveWay>& ways, const GrooveWay& way, double reach) {
+    return std::find_if(ways.begin(), ways.end(), [&](const GrooveWay& known) {
+        const auto inside = std::count_if(way.places.begin(), way.places.end(), [&](const GroovePlace& place) {
+            return within(known, place.frame.at(place.numbers.root()), reach);
+        });
+        return 2 * static_cast<std::size_t>(inside) > way.places.size();
+    });
+}
+
 // What registration.hpp wants to know of the faces: their points off them, by view.
 void add_differences(ViewDifferences& sum, const Around& around, const GrooveWay& way) {
     for (const auto part : {&GrooveFit::bevel, &GrooveFit::top}) {
@@ -232,7 +275,7 @@ Grooves find_grooves(const Around& around, double min_length_mm) {
         if (way) {
             way = measure_groove(following, *way);
         }
-        if (!way) {
+        if (!way || !is_groove(*way, following.step)) {
             tried[a.crease] = 1;
             continue;
         }
@@ -250,7 +293,12 @@ Grooves find_grooves(const Around& around, double min_length_mm) {
         for (std::size_t i = 0; i < around.creases.size(); ++i) {
             result.claimed[i] = result.claimed[i] || within(*way, around.creases[i].p, 0.5 * reach);
         }
-        ways.push_back(std::move(*way));
+        const auto known = same_groove(ways, *way, 0.5 * reach);
+        if (known == ways.end()) {
+            ways.push_back(std::move(*way));
+        } else if (length > length_of(*known)) {
+            *known = std::move(*way);
+        }
     }
     ViewDifferences differences;
     for (const GrooveWay& way : ways) {
