@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kRound = 40 * std::numbers::pi / 180;  // between the tops of two gaps that meet round a corner
 constexpr double kLeastButt = 40;                       // of a seam, in point distances
+constexpr double kLeastOverRows = 1.2;                  // width of a gap, in distances of rows beside it
 constexpr double kUnseen = 0.2;  // noises by which an edge's place is doubtful beyond what its witnesses scatter
 
 std::vector<GapStation> at_equal_steps(const GapWay& way, double step) {
@@ -244,6 +245,19 @@ double length_of(const std::vector<GapStation>& way) {
     return length;
 }
 
+// Whether the scan's own rows are as far apart beside the gap as what it was followed along.
+bool is_between_rows(const Around& around, const std::vector<GapStation>& way) {
+    std::vector<double> excess;
+    const std::size_t stride = 1 + way.size() / 25;
+    for (std::size_t i = 0; i < way.size(); i += stride) {
+        const GapPlace& place = way[i].fit.place;
+        if (!way[i].modelled) {
+            excess.push_back(way[i].fit.gap.value / row_distance(around, place));
+        }
+    }
+    return quantile(excess, 0.5) < kLeastOverRows;
+}
+
 // The gap between two plates shows on their end faces, too: short, and round the corner from the end of the joint.
 bool goes_round(const Seam& shorter, const Seam& longer, double reach) {
     const auto meets = [&](const SeamPoint& a, const SeamPoint& b) {
@@ -278,6 +292,11 @@ Butts find_butts(const Around& around, const std::vector<Border>& borders, doubl
         if (way.size() < 6 || length < least) {
             result.remarks.push_back("a gap " + fixed(length, 1) + " mm long was left out: shorter than " +
                                      fixed(least, 1) + " mm");
+            continue;
+        }
+        if (is_between_rows(around, way)) {
+            result.remarks.push_back("a gap " + fixed(length, 1) +
+                                     " mm long was left out: it is no wider than those between the scan's own rows");
             continue;
         }
         result.seams.push_back(seam_of(around, way, followed.closed));

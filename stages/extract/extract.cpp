@@ -109,6 +109,15 @@ void leave_out_beside_grooves(std::vector<Seam>& seams, const std::vector<Seam>&
     std::erase_if(seams, [&](const Seam& seam) { return beside_groove(seam, found, spacing); });
 }
 
+// What is seen between the plates of a butt joint, a wall and the strays before it, is no fillet.
+void leave_out_in_gaps(std::vector<Seam>& folds, const std::vector<Seam>& found, double spacing) {
+    std::vector<Seam> butts;
+    std::copy_if(found.begin(), found.end(), std::back_inserter(butts),
+                 [](const Seam& seam) { return seam.kind == JointKind::butt; });
+    std::erase_if(
+        folds, [&](const Seam& seam) { return seam.kind != JointKind::corner && beside_groove(seam, butts, spacing); });
+}
+
 // What looks like a gap is none where a web stands in it, that has a fillet with either side: one plate goes on below.
 void leave_out_bridged(std::vector<Seam>& seams, const std::vector<Seam>& folds, double spacing) {
     const auto has_fold = [&](const SeamPoint& point, double reach, const Eigen::Vector3d& to) {
@@ -169,6 +178,7 @@ void find_joints(Extraction& result, const Around& around, std::vector<Crease>& 
         std::erase_if(folds.seams, [](const Seam& seam) { return seam.kind != JointKind::saddle; });
     }
     leave_out_bridged(result.seams, folds.seams, around.field.overall.spacing);
+    leave_out_in_gaps(folds.seams, result.seams, around.field.overall.spacing);
     take(result, std::move(folds.seams), std::move(folds.remarks));
     if (fillet) {
         take(result, find_slanted_fillets(around, result.seams, options.min_length_mm), {});

@@ -143,6 +143,29 @@ bool is_gap(const GapFit& fit, const ScanScale& scale) {
 }
 
 // Between two places, x of the way from a to b.
+double row_distance(const Around& around, const GapPlace& place) {
+    const ScanScale scale = around.field.at(place.p);
+    const double reach = 12 * scale.spacing, half = 0.5 * reach;
+    const Eigen::Vector3d left = place.n.cross(place.t);
+    double widest = 0;
+    for (const double side : {-1.0, 1.0}) {
+        std::vector<double> d{0, reach};
+        around.grid.for_points_in_ball(place.p, place.gap + 2 * reach, [&](const Eigen::Vector3f& q, double) {
+            const Eigen::Vector3d v = q.cast<double>() - place.p;
+            const double across = side * v.dot(left) - 0.5 * place.gap;
+            const double z = v.dot(place.n) - 0.5 * side * place.mismatch;
+            if (across > 0 && across < reach && std::abs(v.dot(place.t)) < half && std::abs(z) < 4 * scale.noise) {
+                d.push_back(across);
+            }
+        });
+        std::sort(d.begin(), d.end());
+        for (std::size_t i = 1; i < d.size(); ++i) {
+            widest = std::max(widest, d[i] - d[i - 1]);
+        }
+    }
+    return widest;
+}
+
 GapPlace between(const GapPlace& a, const GapPlace& b, double x) {
     const auto mixed = [x]<typename T>(const T& from, const T& to) -> T { return (1 - x) * from + x * to; };
     return {mixed(a.p, b.p),     mixed(a.t, b.t).normalized(),  mixed(a.n, b.n).normalized(),

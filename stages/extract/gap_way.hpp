@@ -26,6 +26,10 @@ ViewedPoints viewed_points(const Around& around);
 /// Whether what was fitted is a gap that a butt joint can have, between tops that lie alike.
 bool is_gap(const GapFit& fit, const ScanScale& scale);
 
+/// How far apart the points of the tops beside a gap are, across it, mm: the widest empty strip that is as long as
+/// twelve point distances and nearer to the gap than that.
+double row_distance(const Around& around, const GapPlace& place);
+
 /// Between two places, x of the way from a to b.
 GapPlace between(const GapPlace& a, const GapPlace& b, double x);
 

@@ -125,7 +125,8 @@ double width_of(const std::vector<Eigen::Vector3d>& members) {
 
 // The walls on the side of the plane's normal.
 Walls walls_on(const Scope& scope, const MainPlane& plane) {
-    constexpr double kLow = 0.2;  // of the plane's width; a higher wall may be a part of its own
+    constexpr double kLow = 0.2;   // of the plane's width; a higher wall may be a part of its own
+    constexpr double kFew = 0.05;  // of the outline of a square as large
     const auto& [surfels, grid, piece] = scope;
     const double cell = grid.cell(), reach = 400 * cell;
     Walls walls;
@@ -164,7 +165,9 @@ Walls walls_on(const Scope& scope, const MainPlane& plane) {
         }
     }
     walls.height = quantile(heights, 0.5);
-    walls.at_outline = walls.along_outline > walls.inside;
+    // A few surfels of strays are no wall.
+    const double outline = 4 * std::sqrt(static_cast<double>(members.size()));
+    walls.at_outline = walls.along_outline > std::max(walls.inside, kFew * outline);
     walls.opposite = any_opposite(outwards);
     walls.are_edges = walls.at_outline && (walls.opposite || walls.height < kLow * width_of(members));
     return walls;
@@ -203,17 +206,20 @@ std::optional<std::string> turn(Surfels& surfels, const Scope& scope, std::vecto
     if (scope.piece && !walls.are_edges) {
         return std::nullopt;  // what a piece alone shows beside its largest face may as well be its other faces
     }
-    std::vector<double> sum(surfels.at.size(), 0);
+    constexpr double kShare = 0.05;  // of a piece; less of it lies in the plane by chance
+    std::vector<double> sum(surfels.at.size(), 0), size(surfels.at.size(), 0);
     for (const Surfel& s : surfels.at) {
+        ++size[s.piece];
         if (scope.holds(s) && plane.holds(s, cell)) {
             sum[s.piece] += (walls.are_edges ? -1 : 1) * s.n.dot(plane.n);
         }
     }
     for (Surfel& s : surfels.at) {
-        if (sum[s.piece] != 0) {
-            s.side = walls.at_outline ? AirSide::assumed : AirSide::known;
-            turned[s.piece] = 1;
+        if (std::abs(sum[s.piece]) <= kShare * size[s.piece]) {
+            continue;
         }
+        s.side = walls.at_outline ? AirSide::assumed : AirSide::known;
+        turned[s.piece] = 1;
         if (sum[s.piece] < 0) {
             s.n = -s.n;
         }

@@ -53,6 +53,32 @@ TEST_P(Butts, AreFoundWhereTheTopEdgesAre) {
     EXPECT_GT(seam.points[5].n1.dot(seam.points[5].n2), 0.99);
 }
 
+/// Thin plates before a line profiler: their walls are as narrow as the gap, and what one wall sends to the other is
+/// seen between them.
+struct Sheets {
+    double length, margin, thickness, gap, mismatch;
+    std::uint64_t seed;
+};
+class ButtsOfSheets : public testing::TestWithParam<Sheets> {};
+INSTANTIATE_TEST_SUITE_P(, ButtsOfSheets,
+                         testing::Values(Sheets{17.4, 6.5, 1.2, 1.05, 0.91, 8}, Sheets{23.3, 4.7, 1.1, 1.49, 0.12, 15},
+                                         Sheets{24.7, 6.1, 1.05, 0.66, 0.91, 4}),
+                         [](const auto& which) { return "seed_" + std::to_string(which.param.seed); });
+
+TEST_P(ButtsOfSheets, AreNeitherGroovesNorFillets) {
+    const Sheets sheets = GetParam();
+    SceneOptions scene = butt(sheets.gap, sheets.mismatch);
+    scene.length_mm = sheets.length;
+    scene.margin_mm = sheets.margin;
+    scene.plate_thickness_mm = sheets.thickness;
+    const Accuracy accuracy = measure_accuracy(make_dataset(scene, preset("gocator2440_robot"), sheets.seed));
+    EXPECT_EQ(accuracy.seams, 1u);
+    EXPECT_EQ(accuracy.extracted.wrong_kind_share, 0);
+    EXPECT_EQ(accuracy.extracted.false_share, 0);
+    EXPECT_GE(accuracy.extracted.found, 0.97);
+    EXPECT_LE(accuracy.fitted.rms_mm, 0.08);
+}
+
 TEST(ButtsBySign, PlateTwoIsOnTheLeft) {
     const SceneOptions scene = butt(0.9, 1.2);
     const Dataset dataset = make_dataset(scene, {}, 12);
