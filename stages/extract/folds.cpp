@@ -106,9 +106,26 @@ Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
+namespace {
+
+void tell_left_out(std::string_view one, std::string_view many, const std::vector<double>& lengths,
+                   const std::string& why, std::vector<std::string>& remarks) {
+    if (!lengths.empty()) {
+        const std::string longest = fixed(*std::max_element(lengths.begin(), lengths.end()), 1) + " mm ";
+        remarks.push_back((lengths.size() == 1 ? std::string(one) + " of " + longest + "was"
+                                               : std::to_string(lengths.size()) + " " + std::string(many) +
+                                                     " of up to " + longest + "were") +
+                          " left out: " + why);
+    }
+}
+
+}  // namespace
+
 std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& tracks, double min_length_mm,
                               std::vector<std::string>& remarks) {
     std::vector<Fold> joints;
+    std::vector<double> narrow, too_short;
+    double longest_asked = 0;
     for (const Track& track : tracks) {
         const double spacing = tracker.scale_at(track.points[track.points.size() / 2].section).spacing;
         const double least = min_length_mm > 0 ? min_length_mm : kLeastFold * spacing;
@@ -116,8 +133,7 @@ std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& 
         if (found >= least) {
             auto way = measure_track(tracker, track);
             if (!way) {
-                remarks.push_back("a crease of " + fixed(found, 1) +
-                                  " mm was left out: its flanks are too narrow or too rough for a joint");
+                narrow.push_back(found);
                 continue;
             }
             found = length_of(*way);
@@ -126,9 +142,11 @@ std::vector<Fold> measure_all(const Tracker& tracker, const std::vector<Track>& 
                 continue;
             }
         }
-        remarks.push_back("a joint of " + fixed(found, 1) + " mm was left out: shorter than " + fixed(least, 1) +
-                          " mm");
+        too_short.push_back(found);
+        longest_asked = std::max(longest_asked, least);
     }
+    tell_left_out("a crease", "creases", narrow, "flanks too narrow or too rough for a joint", remarks);
+    tell_left_out("a joint", "joints", too_short, "shorter than " + fixed(longest_asked, 1) + " mm", remarks);
     return joints;
 }
 

@@ -91,9 +91,10 @@ struct Seed {
     double thickness = 0;
 };
 
-std::optional<Seed> seed_of(const Around& around, const Border& border, const LapsAsked& asked) {
-    const double least = asked.by_any_step ? 3 * around.field.at(border.p).noise : asked.max_step_mm;
-    const auto below = sheet_beyond(around, border, kEdgeReach, -kMostThickness, -least);
+// Of an edge from `least` to `most` mm high.
+std::optional<Seed> seed_of(const Around& around, const Border& border, const LapsAsked& asked, double least,
+                            double most) {
+    const auto below = sheet_beyond(around, border, kEdgeReach, -most, -least);
     if (!below || (!asked.by_any_step && !is_wide(around, border, kLeastLapWidth * -below->height))) {
         return std::nullopt;
     }
@@ -138,19 +139,39 @@ void tell_of_unseen_sides(const Around& around, const std::vector<Border>& borde
     }
 }
 
+// Sheets may be as thin as what is machined.
+void tell_of_low_steps(std::vector<double> heights, const LapsAsked& asked, Laps& result) {
+    constexpr std::size_t kLine = 20;  // pieces of border
+    if (heights.size() >= kLine) {
+        result.remarks.push_back("a step " + fixed(quantile(heights, 0.5), 2) +
+                                 " mm high was taken for machined, not for a lap: " + "extract.max_step_mm is " +
+                                 fixed(asked.max_step_mm, 2) + " mm; set it lower if that is a sheet");
+    }
+}
+
 // The upper plates; edges that lie on a table become tracks of the result, and remarks.
 std::vector<Plate> follow_all(const Around& around, const std::vector<Border>& borders, const LapsAsked& asked,
                               Laps& result) {
     std::vector<Plate> plates;
     std::vector<Track> taken, &tables = result.tracks;
     std::vector<Seed> unseen;
+    std::vector<double> low;
     for (const Border& border : borders) {
-        const auto seed = seed_of(around, border, asked);
+        const double noise = around.field.at(border.p).noise;
+        const auto seed =
+            seed_of(around, border, asked, asked.by_any_step ? 3 * noise : asked.max_step_mm, kMostThickness);
         const auto known = [&](const std::vector<Track>& tracks) {
             return std::any_of(tracks.begin(), tracks.end(), [&](const Track& track) {
                 return lies_on(track, {seed->foot.p, seed->foot.n1, seed->foot.n2}, 4 * around.following.step);
             });
         };
+        const double least_seen = 5 * noise;
+        if (!seed && !asked.by_any_step && least_seen < asked.max_step_mm) {
+            const auto machined = seed_of(around, border, asked, least_seen, asked.max_step_mm);
+            if (machined) {
+                low.push_back(machined->thickness);
+            }
+        }
         if (!seed || known(taken) || known(tables)) {
             continue;
         }
@@ -180,6 +201,7 @@ std::vector<Plate> follow_all(const Around& around, const std::vector<Border>& b
         plate->tracks.push_back(std::move(*track));
     }
     tell_of_unseen_sides(around, borders, asked, plates, std::move(unseen), result);
+    tell_of_low_steps(std::move(low), asked, result);
     return plates;
 }
 
