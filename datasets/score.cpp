@@ -171,6 +171,8 @@ void summarise(const std::vector<Offset>& offsets, Score& score) {
         vertical += o.weight * o.vertical;
         vertical_squares += o.weight * o.vertical * o.vertical;
         score.max_mm = std::max(score.max_mm, o.distance);
+        score.lateral_max_mm = std::max(score.lateral_max_mm, std::abs(o.lateral));
+        score.vertical_max_mm = std::max(score.vertical_max_mm, std::abs(o.vertical));
     }
     if (total > 0) {
         score.rms_mm = std::sqrt(squares / total);

@@ -29,11 +29,13 @@ struct Score {
                                         ///< is, over the true length
     double p50_mm = 0;
     /// The distances' two parts in the true section: `vertical` along n1 + n2, out of the joint, `lateral` along
-    /// tangent x (n1 + n2); signed means and rms.
+    /// tangent x (n1 + n2); signed means, rms and the largest size.
     double lateral_mean_mm = 0;
     double lateral_rms_mm = 0;
+    double lateral_max_mm = 0;
     double vertical_mean_mm = 0;
     double vertical_rms_mm = 0;
+    double vertical_max_mm = 0;
     double tangent_p95_deg = 0;  ///< between a model's tangent and the true one, whichever way it goes, since a scan
                                  ///< does not say which flank is the first; 0 for extracted points
 };

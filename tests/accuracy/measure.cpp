@@ -50,6 +50,13 @@ void compare_with_sigma(const std::vector<Seam>& seams, const Truth& truth, Accu
     accuracy.within_2_sigma = near ? static_cast<double>(two) / static_cast<double>(near) : 0;
 }
 
+/// Whether a model lies where there is no seam, or is off by more than that.
+bool is_wrong(const SeamModel& model, const Truth& truth, double tolerance_mm) {
+    constexpr double kSeen = 0.02;  // of the length; ends may reach too far
+    const Score own = score(std::span(&model, 1), truth);
+    return own.max_mm > tolerance_mm || (own.false_share > kSeen && tolerance_mm < kCorrespondence);
+}
+
 }  // namespace
 
 Scan scan_of(const Dataset& dataset) {
@@ -80,6 +87,10 @@ Accuracy measure_accuracy(const Dataset& dataset, const ExtractOptions& options)
         a.validated_rms_mm = std::max(a.validated_rms_mm, deviation.rms_mm);
         a.least_coverage = std::min(a.least_coverage, deviation.coverage);
         a.passed += deviation.pass;
+        a.passed_wrong += deviation.pass && is_wrong(models.back(), dataset.truth, deviation.tolerance_mm);
+        if (models.back().saddle) {
+            a.saddles.push_back(*models.back().saddle);
+        }
     }
     a.stages_s = seconds_since(start);
     a.points = scan.points.size();

@@ -36,11 +36,14 @@ struct Accuracy {
     double common_mm = 0;
     Score extracted_apart;
     Score fitted_apart;
-    double within_1_sigma = 0;    ///< share of extracted points whose distance from the truth is below their sigma
-    double within_2_sigma = 0;    ///< below twice their sigma
-    double validated_rms_mm = 0;  ///< largest of all models
-    double least_coverage = 1;    ///< smallest of all models
-    std::size_t passed = 0;       ///< models whose verdict is pass
+    double within_1_sigma = 0;     ///< share of extracted points whose distance from the truth is below their sigma
+    double within_2_sigma = 0;     ///< below twice their sigma
+    double validated_rms_mm = 0;   ///< largest of all models
+    double least_coverage = 1;     ///< smallest of all models
+    std::size_t passed = 0;        ///< models whose verdict is pass
+    std::size_t passed_wrong = 0;  ///< of those, the ones that are off by more than their verdict's tolerance, or where
+                                   ///< there is no seam
+    std::vector<SaddleParameters> saddles;  ///< of the models that have them
     double extract_s = 0;
     double stages_s = 0;  ///< extract, place, fit, validate
 };
