@@ -167,6 +167,13 @@ bool is_shadow(const BevelLevel& level, const BevelLevel& other, double higher) 
     return level.turned < 0.5 && less > sure && std::abs(less - higher) > sure;
 }
 
+// Whether an end that is less deep than the other one is nothing but a single view's: it may lie as high as the other
+// by chance.
+bool may_be_shadow(const BevelLevel& level, const BevelLevel& other) {
+    const auto views = std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > 0.02; });
+    return is_shadow(level, other, 0) && views < 2;
+}
+
 // Whether a second witness tells of an end: the root face below it, another view, or the other bevel, which ends about
 // as deep.
 bool confirmed(const BevelLevel& level, const std::optional<BevelLevel>& other) {
@@ -224,6 +231,10 @@ std::optional<GrooveRoot> pool_roots(std::span<GrooveFit> fits, double step, dou
                                      : static_cast<std::size_t>(!level[0] || root.as_other[0]);
     root.unseen = !root.closed && (median(fits, root, kGap) > kWidestRoot || !level[deepest] ||
                                    !confirmed(*level[deepest], root.square ? std::nullopt : level[1 - deepest]));
+    for (std::size_t k = 0; k < 2 && !root.square && !root.closed; ++k) {
+        root.unseen =
+            root.unseen || (level[k] && level[1 - k] && !root.as_other[k] && may_be_shadow(*level[k], *level[1 - k]));
+    }
     if (root.unseen) {
         doubt_ends(fits);
     }
