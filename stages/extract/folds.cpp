@@ -104,10 +104,6 @@ Seam seam_of(const Fold& fold, const Eigen::Vector3d& origin) {
     return seam;
 }
 
-}  // namespace
-
-namespace {
-
 void tell_left_out(std::string_view one, std::string_view many, const std::vector<double>& lengths,
                    const std::string& why, std::vector<std::string>& remarks) {
     if (!lengths.empty()) {

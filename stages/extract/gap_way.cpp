@@ -142,7 +142,6 @@ bool is_gap(const GapFit& fit, const ScanScale& scale) {
            n1.dot(n2) > std::cos(kMostGapTurn) && std::min(support[0], support[1]) > 0;
 }
 
-// Between two places, x of the way from a to b.
 double row_distance(const Around& around, const GapPlace& place) {
     const ScanScale scale = around.field.at(place.p);
     const double reach = 12 * scale.spacing, half = 0.5 * reach;

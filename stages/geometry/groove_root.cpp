@@ -167,21 +167,23 @@ bool is_shadow(const BevelLevel& level, const BevelLevel& other, double higher) 
     return level.turned < 0.5 && less > sure && std::abs(less - higher) > sure;
 }
 
+bool seen_by_two_views(const BevelLevel& level) {
+    constexpr double kLeastShare = 0.02;  // of a view that is a seventh as sure as the others
+    return std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > kLeastShare; }) > 1;
+}
+
 // Whether an end that is less deep than the other one is nothing but a single view's: it may lie as high as the other
 // by chance.
 bool may_be_shadow(const BevelLevel& level, const BevelLevel& other) {
-    const auto views = std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > 0.02; });
-    return is_shadow(level, other, 0) && views < 2;
+    return is_shadow(level, other, 0) && !seen_by_two_views(level);
 }
 
 // Whether a second witness tells of an end: the root face below it, another view, or the other bevel, which ends about
 // as deep.
 bool confirmed(const BevelLevel& level, const std::optional<BevelLevel>& other) {
-    constexpr double kLeastShare = 0.02;  // of a view that is a seventh as sure as the others
-    constexpr double kAlike = 0.05;       // of the depth
-    constexpr double kTurned = 0.3;
-    const auto views = std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > kLeastShare; });
-    return level.turned > kTurned || views > 1 ||
+    constexpr double kAlike = 0.05;  // of the depth
+    constexpr double kTurned = 0.3;  // of the places
+    return level.turned > kTurned || seen_by_two_views(level) ||
            (other && std::abs(other->depth - level.depth) < kAlike * level.depth);
 }
 
