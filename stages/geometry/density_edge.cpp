@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include "stages/geometry/robust.hpp"
@@ -15,13 +14,14 @@ namespace {
 
 // lambda_0 over lambda: strays alone, or another face beyond the end that is seen at a glance
 constexpr std::array kStrays{0.02, 0.06, 0.12, 0.2};
-constexpr double kFallen = 0.3;        // share of the density before it below which a bin lies beyond the end
-constexpr std::size_t kBefore = 4;     // bins that tell the density before a place
-constexpr std::size_t kBlurred = 2;    // bins right before it that may be the end's own
-constexpr std::size_t kAfter = 5;      // bins that tell whether it has ended there
-constexpr double kSure = 14;           // deviance of those
-constexpr double kFewest = 12;         // points in those
-constexpr double kOverdispersion = 2;  // variance of counts over Poisson's: scanners sample in rows, and lose spots
+constexpr double kFallen = 0.3;          // share of the density before it below which a bin lies beyond the end
+constexpr std::size_t kBefore = 4;       // bins that tell the density before a place
+constexpr std::size_t kBlurred = 2;      // bins right before it that may be the end's own
+constexpr std::size_t kAfter = 5;        // bins that tell whether it has ended there,
+constexpr std::size_t kFewestAfter = 3;  // or fewer, where another face begins again soon
+constexpr double kSure = 14;             // deviance of those
+constexpr double kFewest = 12;           // points in those
+constexpr double kOverdispersion = 2;    // variance of counts over Poisson's: scanners sample in rows, and lose spots
 
 double phi(double z) {
     return 0.5 * std::erfc(-z / std::numbers::sqrt2);
@@ -44,26 +44,22 @@ double deviance(double n, double e) {
 // The first place after `from` where two bins hold hardly any points, and those after them too few for a chance gap;
 // empty when there are too few before it.
 std::optional<double> first_fall(std::span<const double> sorted, double from, double bin) {
-    const auto count = [&](double low) {
-        return static_cast<double>(std::lower_bound(sorted.begin(), sorted.end(), low + bin) -
-                                   std::lower_bound(sorted.begin(), sorted.end(), low));
+    constexpr double kStep = 0.25;  // bins: a gap may begin within one
+    const auto count = [&](double low, std::size_t bins) {
+        return static_cast<double>(
+            std::lower_bound(sorted.begin(), sorted.end(), low + static_cast<double>(bins) * bin) -
+            std::lower_bound(sorted.begin(), sorted.end(), low));
     };
-    std::vector<double> before;
-    for (std::size_t i = kBefore + kBlurred; i > 0; --i) {
-        before.push_back(count(from - bin * static_cast<double>(i)));
-    }
-    for (double low = from; low < sorted.back() + bin; low += bin) {
-        const auto recent = before.end() - kBefore - kBlurred;
-        const double all = std::accumulate(recent, recent + kBefore, 0.0), usual = all / kBefore;
-        const double here = count(low);
-        double after = here;
-        for (std::size_t i = 1; i < kAfter; ++i) {
-            after += count(low + bin * static_cast<double>(i));
+    for (double low = from; low < sorted.back() + bin; low += kStep * bin) {
+        const double before = count(low - static_cast<double>(kBefore + kBlurred) * bin, kBefore),
+                     usual = before / static_cast<double>(kBefore);
+        double surest = 0;
+        for (std::size_t bins = kFewestAfter; bins <= kAfter; ++bins) {
+            surest = std::max(surest, deviance(count(low, bins), static_cast<double>(bins) * usual));
         }
-        if (here + count(low + bin) <= 2 * kFallen * usual && deviance(after, kAfter * usual) > kSure) {
-            return all < kFewest ? std::nullopt : std::optional(low);
+        if (count(low, 2) <= 2 * kFallen * usual && surest > kSure) {
+            return before < kFewest ? std::nullopt : std::optional(low);
         }
-        before.push_back(here);
     }
     return std::nullopt;
 }

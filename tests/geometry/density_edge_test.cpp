@@ -66,6 +66,23 @@ TEST(DensityEdge, IsNotTheLastPoint) {
     EXPECT_NEAR(density_edge(x, 5, 0.06, 0.04)->at, 10, 0.06);
 }
 
+// ... which lies beyond a gap that is too short for all the bins that tell an end.
+TEST(DensityEdge, IsNotThatOfADenserFaceSoonBeyondIt) {
+    std::mt19937 random(5);
+    constexpr int kDraws = 200;
+    int missed = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+        std::vector<double> x = sample({10, 0.04, 80}, random);
+        std::uniform_real_distribution<double> face(10.45, 11);
+        for (int i = 0; i < 150; ++i) {
+            x.push_back(face(random));
+        }
+        const auto edge = density_edge(x, 5, 0.06, 0.04);
+        missed += !edge || std::abs(edge->at - 10) > 4 * edge->sigma;
+    }
+    EXPECT_LE(missed, 0.03 * kDraws);
+}
+
 TEST(DensityEdge, NeedsPointsBeforeIt) {
     EXPECT_FALSE(density_edge({}, 5, 0.06, 0.04));
     EXPECT_FALSE(density_edge({4.9, 4.95, 5.01, 5.02}, 5, 0.06, 0.04));
