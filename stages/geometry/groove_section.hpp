@@ -113,10 +113,10 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
                                     const GrooveWindow& window, int rounds);
 
 /// The faces' whereabouts where only the root, at the frame's own place, and both bevels' normals in the section are
-/// known: a bevel's upper end is where its points end, and the top is the line beside it that most points lie on. Empty
-/// where there are no bevels.
+/// known, by `back` and `ahead` mm of the groove: a bevel's upper end is where its points end, and the top is the line
+/// beside it that most points lie on. Empty where there are no bevels.
 std::optional<GrooveShape> shape_about(const PointGrid& grid, const ScanScale& scale, const GrooveFrame& frame,
-                                       const std::array<Eigen::Vector2d, 2>& normals);
+                                       const std::array<Eigen::Vector2d, 2>& normals, double back, double ahead);
 
 /// Where the bevels end by all places together, in order along the groove and `step` mm apart, each of which saw
 /// `window` mm of it; sets `lower` of each. A bevel's end is often hidden in the shadow of the other plate: it is then

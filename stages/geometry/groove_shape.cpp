@@ -9,8 +9,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kFar = 60;  // mm, of a bevel
-constexpr double kHalf = 4;  // mm of the groove that are looked at, each way
+constexpr double kFar = 60;    // mm, of a bevel
+constexpr double kWidest = 5;  // mm from the root to a bevel
+constexpr double kBegun = 6;   // spacings of a bevel that tell how dense its points are
+constexpr std::size_t kFewest = 20;
 
 // The direction, out of the groove, of the line through the corner on which most points lie.
 Vector2d top_beside(std::span<const GroovePoint> points, const Vector2d& corner, const Vector2d& bevel, double turn,
@@ -34,13 +36,30 @@ Vector2d top_beside(std::span<const GroovePoint> points, const Vector2d& corner,
     return best;
 }
 
+// The middle of the `width` that holds most of the values, and how many those are.
+std::pair<double, std::size_t> densest(std::vector<double> values, double width) {
+    std::sort(values.begin(), values.end());
+    std::size_t first = 0, most = 0;
+    double middle = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        while (values[i] - values[first] > width) {
+            ++first;
+        }
+        if (i - first + 1 > most) {
+            most = i - first + 1;
+            middle = values[first + (i - first) / 2];
+        }
+    }
+    return {middle, most};
+}
+
 }  // namespace
 
 std::optional<GrooveShape> shape_about(const PointGrid& grid, const ScanScale& scale, const GrooveFrame& frame,
-                                       const std::array<Vector2d, 2>& normals) {
+                                       const std::array<Vector2d, 2>& normals, double back, double ahead) {
     const std::size_t one_view[] = {0};
     const GrooveBox box{{-kFar, -5}, {kFar, kFar}};
-    const auto points = groove_points(grid, one_view, frame, -kHalf, kHalf, box);
+    const auto points = groove_points(grid, one_view, frame, -back, ahead, box);
     const double gate = 4 * scale.noise + scale.spacing;
     GrooveShape shape;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -50,21 +69,23 @@ std::optional<GrooveShape> shape_about(const PointGrid& grid, const ScanScale& s
         std::vector<double> off, u;
         for (const GroovePoint& q : points) {
             const double along = up.dot(q.section()), away = n.dot(q.section());
-            if (along > 3 * scale.spacing && along < 20 * scale.spacing && away < gate && away > -5) {
+            if (along > 0 && away < gate && away > -kWidest) {
                 off.push_back(away);
             }
         }
-        if (off.size() < 20) {
+        const auto [away, held] = densest(std::move(off), gate);
+        if (held < kFewest) {
             return std::nullopt;
         }
-        const Vector2d foot = quantile(off, 0.5) * n;
+        const Vector2d foot = away * n;
         for (const GroovePoint& q : points) {
             const Vector2d v = q.section() - foot;
             if (std::abs(n.dot(v)) < gate + 0.02 * up.dot(v) && up.dot(v) > 0) {
                 u.push_back(up.dot(v));
             }
         }
-        const auto end = density_edge(std::move(u), 12 * scale.spacing, 2 * scale.spacing, scale.noise);
+        const double begin = quantile(u, 0.05);
+        const auto end = density_edge(std::move(u), begin + kBegun * scale.spacing, scale.spacing, scale.noise);
         if (!end) {
             return std::nullopt;
         }

@@ -36,7 +36,8 @@ GrooveFrame frame_at(const SeamModel& model, const ArcLength& arc, double statio
 void measure_groove_samples(const SeamModel& model, const ArcLength& arc, const Vector3d& origin, const PointGrid& grid,
                             std::span<const std::size_t> view_starts, const ScanScale& scale,
                             std::vector<DeviationSample>& samples, std::vector<double> (&density)[2]) {
-    const GrooveWindow window = groove_window(measuring_window(scale));
+    constexpr double kAround = 4;  // mm of the groove that tell its shape, each way
+    const GrooveWindow window = groove_window(measuring_window(scale)), around{kAround, kAround, 0, 0};
     std::vector<std::optional<GrooveFit>> measured(samples.size());
     parallel_for(samples.size(), 4, [&](std::size_t i) {
         const double station = samples[i].station_mm;
@@ -45,10 +46,14 @@ void measure_groove_samples(const SeamModel& model, const ArcLength& arc, const 
         const auto in_section = [&](const Vector3d& n) {
             return Vector2d(n.dot(frame.left()), n.dot(frame.up)).normalized();
         };
-        const auto shape = shape_about(grid, scale, frame, {in_section(flanks.n1), in_section(flanks.n2)});
+        const auto inside = [&](const GrooveWindow& whole) {
+            return model.closed ? whole : near_ends(whole, station, arc.length() - station);
+        };
+        const GrooveWindow near = inside(around);
+        const auto shape =
+            shape_about(grid, scale, frame, {in_section(flanks.n1), in_section(flanks.n2)}, near.back, near.ahead);
         if (shape) {
-            const GrooveWindow here = model.closed ? window : near_ends(window, station, arc.length() - station);
-            measured[i] = fit_groove(grid, view_starts, scale, frame, *shape, here, 3);
+            measured[i] = fit_groove(grid, view_starts, scale, frame, *shape, inside(window), 3);
         }
     });
     std::vector<GrooveFit> fits;

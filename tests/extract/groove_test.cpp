@@ -197,6 +197,38 @@ TEST(Grooves, AreValidatedByTheirScan) {
     EXPECT_NEAR(moved.signed_mean_mm, 0.4 * up.dot(0.5 * (middle.n1 + middle.n2)), 0.06);
 }
 
+// Bevels of a few point distances, beside tops that hold many more points; and a plate not much longer than the window
+// that tells a bevel's place, up to whose ends the seam is to be measured.
+struct SmallGroove {
+    const char* name;
+    double length_mm, plate_mm, root_face_mm, gap_mm, mismatch_mm, included_angle_deg;
+    const char* preset;
+};
+class SmallGrooves : public testing::TestWithParam<SmallGroove> {};
+INSTANTIATE_TEST_SUITE_P(Grooves, SmallGrooves,
+                         testing::Values(SmallGroove{"ShallowBevels", 40, 6, 2.7, 2.2, 1.3, 63, "standard"},
+                                         SmallGroove{"ShortPlate", 14, 4, 1.7, 1.2, 0.2, 74, "gocator2440_robot"},
+                                         SmallGroove{"ShortSteepPlate", 14, 4, 1.6, 1.2, 0.9, 76, "ljx8200_robot"}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST_P(SmallGrooves, AreValidatedUpToTheirEnds) {
+    const SmallGroove& groove = GetParam();
+    SceneOptions scene = plates(groove.gap_mm, groove.mismatch_mm, groove.root_face_mm, groove.included_angle_deg);
+    scene.length_mm = groove.length_mm;
+    scene.plate_thickness_mm = groove.plate_mm;
+    scene.margin_mm = 9;
+    for (const std::uint64_t seed : {3, 4}) {
+        const Scan scan = scan_of(make_dataset(scene, preset(groove.preset), seed));
+        const Extraction extraction = extract(scan, {});
+        ASSERT_EQ(extraction.seams.size(), 1u) << seed;
+        const Seam& seam = extraction.seams.front();
+        const Deviation deviation = validate(fit(seam, place(seam, {}), {}), scan, {});
+        EXPECT_TRUE(deviation.pass) << seed << ": " << deviation.verdict;
+        EXPECT_EQ(deviation.coverage, 1) << seed;
+        EXPECT_LT(deviation.max_mm, 0.1) << seed;
+    }
+}
+
 TEST(GrooveCsv, HasANumberAndItsSigmaAtEveryPointAndAnEmptyCellWhereNotSeen) {
     Seam seam;
     seam.kind = JointKind::v_groove;
