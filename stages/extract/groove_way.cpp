@@ -14,6 +14,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kLeastBevelDensity = 0.1;  // of the bevel's usual density
+constexpr double kMostSlope = 0.3;          // of a groove's faces along it, from one place to the next
 constexpr std::size_t kMostGrooveSteps = 100000;
 
 GrooveWindow following_window_of(const ScanScale& scale) {
@@ -97,7 +98,8 @@ bool believable(const GroovePlace& place, const std::vector<GroovePlace>& way, d
         return false;
     }
     for (std::size_t k = 0; k < 2; ++k) {
-        if (place.fit.density[k] < kLeastBevelDensity * quantile(density[k], 0.5)) {
+        if (place.fit.density[k] < kLeastBevelDensity * quantile(density[k], 0.5) ||
+            std::max(std::abs(place.fit.bevel[k].slope_along), std::abs(place.fit.top[k].slope_along)) > kMostSlope) {
             return false;
         }
     }

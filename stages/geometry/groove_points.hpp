@@ -30,6 +30,8 @@ struct GroovePoint {
     float s, a, h;
     std::uint32_t view;
     Eigen::Vector2d section() const { return {a, h}; }
+    /// Carried back to the place itself, along a surface that drifts by this much per mm of s.
+    Eigen::Vector2d section(const Eigen::Vector2d& drift) const { return section() - s * drift; }
 };
 
 /// Part of a section: from `low` to `high` in a and h, mm.

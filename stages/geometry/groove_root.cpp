@@ -168,7 +168,7 @@ bool is_shadow(const BevelLevel& level, const BevelLevel& other, double higher) 
 }
 
 bool seen_by_two_views(const BevelLevel& level) {
-    constexpr double kLeastShare = 0.02;  // of a view that is a seventh as sure as the others
+    constexpr double kLeastShare = 0.06;  // of a view that is a quarter as sure as the others
     return std::count_if(level.views.begin(), level.views.end(), [](double x) { return x > kLeastShare; }) > 1;
 }
 

@@ -17,6 +17,7 @@ constexpr double kMostPoints = 1200;  // of a face: more add time and, their noi
 constexpr double kRoughly = 300;      // of them tell where to look
 constexpr std::size_t kFewestInSection = 30;
 constexpr double kDeepest = 80;  // mm along a bevel
+constexpr double kWedge = 0.12;  // slope by which the guess may be off
 
 Vector2d normal_of(const Vector2d& d, int side) {
     return side == 0 ? Vector2d(d[1], -d[0]) : Vector2d(-d[1], d[0]);
@@ -43,13 +44,13 @@ struct FacePoint {
     std::uint32_t view;
 };
 
-// `own` says of a point (a, h) whether it can be this face's at all.
+// Carried back along `drift`; `own` says of a point (a, h) whether it can be this face's at all.
 template <class Own>
-std::vector<FacePoint> points_of(std::span<const GroovePoint> points, const GrooveFace& face, const Gate& gate,
-                                 Own&& own) {
+std::vector<FacePoint> points_of(std::span<const GroovePoint> points, const Vector2d& drift, const GrooveFace& face,
+                                 const Gate& gate, Own&& own) {
     std::vector<FacePoint> taken;
     for (const GroovePoint& q : points) {
-        const Vector2d x = q.section();
+        const Vector2d x = q.section(drift);
         const double u = face.along(x);
         if (gate.holds(u, face.off(x)) && own(x)) {
             taken.push_back({u, q.s, face.n.dot(x - face.o), q.view});
@@ -58,7 +59,8 @@ std::vector<FacePoint> points_of(std::span<const GroovePoint> points, const Groo
     return taken;
 }
 
-bool fit(GrooveFace& face, const std::vector<FacePoint>& points, double along, double most, const ScanScale& scale) {
+bool fit(GrooveFace& face, const std::vector<FacePoint>& points, const Vector2d& drift, double along, double most,
+         const ScanScale& scale) {
     if (points.size() < kFewestInSection) {
         return false;
     }
@@ -87,7 +89,7 @@ bool fit(GrooveFace& face, const std::vector<FacePoint>& points, double along, d
     face.length = length;
     face.c = pick * c;
     face.covariance = unit * unit * pick * cofactors * pick.transpose();
-    face.slope_along = c[2] / along;
+    face.slope_along = c[2] / along + face.gradient().dot(drift);
     face.scale = quadric.scale();
     face.shift.clear();
     for (std::size_t i = 0; i < quadric.size(); ++i) {
@@ -154,6 +156,7 @@ struct Work {
     ScanScale scale;
     GrooveWindow window;
     GrooveFit fit;
+    std::array<Vector2d, 2> drift{Vector2d::Zero(), Vector2d::Zero()};  // of each side, mm per mm along the groove
     double most = kMostPoints;
 
     double along() const { return std::max(window.back, window.ahead); }
@@ -170,7 +173,7 @@ struct Work {
         GrooveFace& face = fit.bevel[static_cast<std::size_t>(k)];
         const double corner = face.along(fit.shape.corner[static_cast<std::size_t>(k)]);
         const Gate gate{low, high, gate_width() + (wedge > 0 ? scale.spacing : 0), wedge, corner};
-        return seampath::fit(face, points_of(points, face, gate, own(k)), along(), most, scale);
+        return fit_face(k, face, gate, own(k));
     }
 
     bool fit_top(int k, double wedge) {
@@ -178,8 +181,13 @@ struct Work {
         const double corner = face.along(fit.shape.corner[static_cast<std::size_t>(k)]);
         const Gate gate{corner + window.band, corner + window.away, gate_width() + (wedge > 0 ? scale.spacing : 0),
                         wedge, 0};
-        return seampath::fit(face, points_of(points, face, gate, [](const Vector2d&) { return true; }), along(), most,
-                             scale);
+        return fit_face(k, face, gate, [](const Vector2d&) { return true; });
+    }
+
+    template <class Own>
+    bool fit_face(int k, GrooveFace& face, const Gate& gate, Own&& own) {
+        const Vector2d& with = drift[static_cast<std::size_t>(k)];
+        return seampath::fit(face, points_of(points, with, face, gate, own), with, along(), most, scale);
     }
 
     // Along -d, so that the bevel's points lie before their end; view by view: a view may be shadowed where another
@@ -196,7 +204,7 @@ struct Work {
         const auto here = [&](const Vector2d& q) {
             return nearer(q) && !(faced && (q - other).dot(behind) > -gate_width());
         };
-        for (const FacePoint& q : points_of(points, face, gate, here)) {
+        for (const FacePoint& q : points_of(points, drift[side], face, gate, here)) {
             x.resize(std::max<std::size_t>(x.size(), q.view + 1));
             x[q.view].push_back(-q.u);
         }
@@ -216,7 +224,7 @@ struct Work {
         const auto& [edge, share] = *end;
         const Vector2d corner = fit.shape.corner[side], down = fit.bevel[side].at(-edge.at) - corner;
         const double depth = std::abs(cross(fit.top[side].tangent(0), down));
-        fit.seen[side] = bevel_turn(points, fit, side, corner + down, scale, gate_width())
+        fit.seen[side] = bevel_turn(points, drift[side], fit, side, corner + down, scale, gate_width())
                              .value_or(BevelDepth{depth, edge.sigma * depth / down.norm(), {}});
         fit.shape.end[side] = corner + fit.seen[side]->depth / depth * down;
         fit.seen[side]->sigma = std::hypot(fit.seen[side]->sigma, std::sqrt(fit.top[side].covariance(0, 0)));
@@ -225,6 +233,10 @@ struct Work {
 
     void set_corners() {
         for (std::size_t k = 0; k < 2; ++k) {
+            Eigen::Matrix2d gradients;
+            gradients << fit.bevel[k].gradient().transpose(), fit.top[k].gradient().transpose();
+            const Vector2d found = gradients.inverse() * Vector2d(fit.bevel[k].slope_along, fit.top[k].slope_along);
+            drift[k] = found.norm() < kWedge ? found : Vector2d(0, 0);
             fit.shape.corner[k] = fit.bevel[k].at(crossing(fit.bevel[k], fit.top[k]));
             fit.shape.out[k] = fit.top[k].tangent(0);
         }
@@ -261,7 +273,6 @@ GrooveWindow near_ends(const GrooveWindow& window, double to_begin, double to_en
 std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::size_t> view_starts,
                                     const ScanScale& scale, const GrooveFrame& frame, const GrooveShape& guess,
                                     const GrooveWindow& window, int rounds) {
-    constexpr double kWedge = 0.12;  // slope by which the guess may be off
     GrooveBox box{guess.corner[0], guess.corner[0]};
     const double width = (guess.corner[0] - guess.corner[1]).norm();
     const Vector2d d0 = (guess.end[0] - guess.corner[0]).normalized(),
@@ -319,8 +330,8 @@ std::optional<GrooveFit> fit_groove(const PointGrid& grid, std::span<const std::
         const Gate gate{end, end + length, work.gate_width()};
         double count = 0;
         for (const GroovePoint& q : points) {
-            count +=
-                std::abs(q.s) <= half && gate.holds(fit.bevel[k].along(q.section()), fit.bevel[k].off(q.section()));
+            const Vector2d x = q.section(work.drift[k]);
+            count += std::abs(q.s) <= half && gate.holds(fit.bevel[k].along(x), fit.bevel[k].off(x));
         }
         fit.density[k] = count / (2 * half * std::max(length, scale.spacing));
     }

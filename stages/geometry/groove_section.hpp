@@ -56,7 +56,7 @@ struct GrooveFace {
     double length = 1;                   ///< mm
     Eigen::Vector3d c{0, 0, 0};          ///< mm
     Eigen::Matrix3d covariance;          ///< of c, from noise, mm^2
-    double slope_along = 0;              ///< dz/ds at the place
+    double slope_along = 0;              ///< dz/ds at the place: the line is not quite the groove's own
     double scale = 0;                    ///< mm, robust 1-sigma of the points
     std::vector<Eigen::Vector3d> shift;  ///< by how much c changes when a view's points move by 1 mm along n
 
@@ -64,6 +64,7 @@ struct GrooveFace {
     Eigen::Vector2d tangent(double u) const;  ///< unit
     double off(const Eigen::Vector2d& x) const;
     double along(const Eigen::Vector2d& x) const { return d.dot(x - o); }
+    Eigen::Vector2d gradient() const { return n - c[1] / length * d; }  ///< of off(), about o
 };
 
 /// How deep below its own top a bevel ends.
