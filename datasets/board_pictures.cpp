@@ -26,9 +26,12 @@ public:
         for (const Vector2d& p : points) {
             last_ = last_.cwiseMax(p);
         }
-        for (int number = 0; board.kind == BoardKind::charuco && 2 * number + 1 < board.columns * board.rows;
-             ++number) {
-            markers_.push_back(marker_cells(board.dictionary, number));
+        const int squares = board.columns * board.rows;
+        const int markers = board.kind == BoardKind::aruco     ? squares
+                            : board.kind == BoardKind::charuco ? squares / 2
+                                                               : 0;
+        for (int i = 0; i < markers; ++i) {
+            markers_.push_back(marker_cells(board.dictionary, board.first_marker + i));
         }
     }
 
@@ -48,6 +51,12 @@ private:
         if (board_.kind == BoardKind::circles) {
             return in_circle(p);
         }
+        if (board_.kind == BoardKind::aruco) {
+            const Vector2d q = p / board_.pitch_mm;
+            const int column = static_cast<int>(std::floor(q.x())), row = static_cast<int>(std::floor(q.y()));
+            return column >= 0 && row >= 0 && column < board_.columns && row < board_.rows &&
+                   in_marker(row * board_.columns + column, q - Vector2d(column, row), 0);
+        }
         // Squares begin one pitch before the first inner corner, with a dark one.
         const Vector2d q = p / board_.pitch_mm + Vector2d(1, 1);
         const int column = static_cast<int>(std::floor(q.x())), row = static_cast<int>(std::floor(q.y()));
@@ -59,7 +68,8 @@ private:
         if ((column + row) % 2 == 0) {
             return true;
         }
-        return !chessboard && in_marker((row * columns + column) / 2, q - Vector2d(column, row));
+        return !chessboard && in_marker((row * columns + column) / 2, q - Vector2d(column, row),
+                                        0.5 * (1 - board_.size_mm / board_.pitch_mm));
     }
 
     bool in_circle(const Vector2d& p) const {
@@ -71,11 +81,11 @@ private:
                (p - centre).norm() < board_.size_mm / 2;
     }
 
-    /// `at` in the square, 0 to 1.
-    bool in_marker(int number, const Vector2d& at) const {
+    /// `at` in the square, 0 to 1, in which the marker begins at `margin`.
+    bool in_marker(int number, const Vector2d& at, double margin) const {
         const MarkerCells& marker = markers_[static_cast<std::size_t>(number)];
         const double share = board_.size_mm / board_.pitch_mm;
-        const Vector2d cell = (at - Vector2d::Constant(0.5 * (1 - share))) / share * marker.side;
+        const Vector2d cell = (at - Vector2d::Constant(margin)) / share * marker.side;
         const auto column = static_cast<std::ptrdiff_t>(std::floor(cell.x())),
                    row = static_cast<std::ptrdiff_t>(std::floor(cell.y()));
         const bool inside = column >= 0 && row >= 0 && column < marker.side && row < marker.side;

@@ -142,22 +142,30 @@ std::vector<LitPoint> lit_points(const GreyImage& image, const CameraModel& came
 }  // namespace
 
 Board board_from(const Json& value, const std::string& place, std::vector<std::string>& problems) {
-    const JsonObject object(value, place, problems,
-                            {"kind", "columns", "rows", "pitch_mm", "marker_mm", "diameter_mm", "dictionary"});
+    const JsonObject object(
+        value, place, problems,
+        {"kind", "columns", "rows", "pitch_mm", "marker_mm", "diameter_mm", "dictionary", "first_marker"});
     Board board;
     board.kind = static_cast<BoardKind>(object.word("kind", kBoardKindNames));
-    board.columns = whole_number(object, "columns", 2);
-    board.rows = whole_number(object, "rows", 2);
+    const bool alone = board.kind == BoardKind::aruco;
+    board.columns = whole_number(object, "columns", alone ? 1 : 2);
+    board.rows = whole_number(object, "rows", alone ? 1 : 2);
     board.pitch_mm = needed(object, "pitch_mm");
-    const bool markers = board.kind == BoardKind::charuco, round = board.kind == BoardKind::circles;
+    const bool markers = board.kind == BoardKind::charuco || alone, round = board.kind == BoardKind::circles;
     if (markers) {
         board.size_mm = needed(object, "marker_mm");
         board.dictionary = static_cast<int>(object.word("dictionary", kMarkerDictionaryNames));
     } else if (round) {
         board.size_mm = needed(object, "diameter_mm");
     }
-    for (const auto& [key, belongs] :
-         {std::pair("marker_mm", markers), std::pair("dictionary", markers), std::pair("diameter_mm", round)}) {
+    if (alone && object.has("first_marker")) {
+        board.first_marker = whole_number(object, "first_marker", 0);
+    }
+    if (alone && object.has("rows") && board.columns * board.rows == 1) {
+        object.complain("rows", "one marker's four corners say too little of how sure they are; use two or more");
+    }
+    for (const auto& [key, belongs] : {std::pair("marker_mm", markers), std::pair("dictionary", markers),
+                                       std::pair("first_marker", alone), std::pair("diameter_mm", round)}) {
         if (object.has(key) && !belongs) {
             object.complain(key, "does not belong to a board of this kind; leave it out");
         }

@@ -1,8 +1,10 @@
 #include "stages/board/board.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
@@ -189,6 +191,88 @@ std::vector<SeenPoint> charuco(const cv::Mat& image, const Board& board) {
     return seen;
 }
 
+double grey_at(const GreyImage& image, const Vector2d& p) {
+    const int column = static_cast<int>(std::floor(p.x())), row = static_cast<int>(std::floor(p.y()));
+    const double x = p.x() - column, y = p.y() - row;
+    return (1 - y) * ((1 - x) * image.clamped(column, row) + x * image.clamped(column + 1, row)) +
+           y * ((1 - x) * image.clamped(column, row + 1) + x * image.clamped(column + 1, row + 1));
+}
+
+/// How far beyond p, along n, black ends and white begins: what lacks to white within `reach` px tells it, whatever the
+/// blur.
+double edge_beyond(const GreyImage& image, const Vector2d& p, const Vector2d& n, double reach) {
+    constexpr int kSteps = 16;
+    std::array<double, 2 * kSteps + 1> grey;
+    double sum = 0;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+        grey[static_cast<std::size_t>(i + kSteps)] = grey_at(image, p + reach * i / kSteps * n);
+        sum += grey[static_cast<std::size_t>(i + kSteps)] / (2 * kSteps + 1);
+    }
+    const double black = (grey[0] + grey[1] + grey[2]) / 3,
+                 white = (grey[2 * kSteps] + grey[2 * kSteps - 1] + grey[2 * kSteps - 2]) / 3;
+    return white > black ? reach * (1 - 2 * (sum - black) / (white - black)) : 0;
+}
+
+/// The corners where a marker's sides meet, each a line through the edges along it: a corner's own grey values are
+/// drawn inwards by blur.
+std::vector<Vector2d> marker_corners(const GreyImage& image, const std::vector<cv::Point2f>& pixels, double reach) {
+    constexpr int kRounds = 3, kPlaces = 12;
+    std::vector<Vector2d> corners;
+    for (const cv::Point2f& p : pixels) {
+        corners.emplace_back(p.x, p.y);
+    }
+    Vector2d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    for (int round = 0; round < kRounds; ++round) {
+        std::array<Vector2d, 4> at, along;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vector2d from = corners[k], side = corners[(k + 1) % 4] - from, d = side.normalized();
+            Vector2d n(d.y(), -d.x());
+            n *= n.dot(from - middle) > 0 ? 1 : -1;
+            Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+            Vector2d b(0, 0);
+            for (int i = 0; i < kPlaces; ++i) {
+                const double share = 0.15 + 0.7 * i / (kPlaces - 1);
+                const Vector2d row(1, share - 0.5);
+                A += row * row.transpose();
+                b += edge_beyond(image, from + share * side, n, reach) * row;
+            }
+            const Vector2d c = A.inverse() * b;
+            at[k] = from + 0.5 * side + c[0] * n;
+            along[k] = side + c[1] * n;
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::size_t before = (k + 3) % 4;
+            Eigen::Matrix2d A;
+            A << along[before], -along[k];
+            corners[k] = at[before] + (A.inverse() * (at[k] - at[before])).x() * along[before];
+        }
+    }
+    return corners;
+}
+
+std::vector<SeenPoint> aruco(const GreyImage& picture, const cv::Mat& image, const Board& board) {
+    const auto dictionary = cv::aruco::getPredefinedDictionary(board.dictionary);
+    std::vector<int> markers;
+    std::vector<std::vector<cv::Point2f>> found;
+    cv::aruco::detectMarkers(image, dictionary, found, markers);
+    const auto points = points_of(board);
+    std::vector<SeenPoint> seen;
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+        const int place = markers[i] - board.first_marker;
+        if (place < 0 || place >= board.columns * board.rows) {
+            continue;
+        }
+        // Within the black border, which is one cell wide, and the white between markers.
+        const double side = nearest_distance(found[i]), cell = side / (dictionary->markerSize + 2),
+                     white = side * (board.pitch_mm / board.size_mm - 1);
+        const auto corners = marker_corners(picture, found[i], 0.5 * std::min(cell, white));
+        for (std::size_t k = 0; k < 4; ++k) {
+            seen.push_back({points[4 * static_cast<std::size_t>(place) + k], corners[k]});
+        }
+    }
+    return seen;
+}
+
 }  // namespace
 
 std::vector<SeenPoint> find_board(const GreyImage& image, const Board& board) {
@@ -200,6 +284,8 @@ std::vector<SeenPoint> find_board(const GreyImage& image, const Board& board) {
             return charuco(mat, board);
         case BoardKind::circles:
             return circles(image, mat, board);
+        case BoardKind::aruco:
+            return aruco(image, mat, board);
     }
     throw InternalError("every board can be looked for");
 }

@@ -18,9 +18,10 @@ struct SeenPoint {
 
 /// The board's points in a picture, to a fraction of a pixel, by OpenCV: corners by findChessboardCornersSB (A. Duda
 /// and U. Frese, BMVC 2018), circles by findCirclesGrid, each centre then the grey values' own, ChArUco corners by
-/// their markers, which may be hidden in part. Empty where the board is not found. The board is dark on white; ChArUco
-/// boards are those of OpenCV before 4.6.1, with a dark square first. A chessboard with both numbers even or both odd,
-/// and a grid of circles with an even number of rows, may be read from the other end.
+/// their markers, ArUco markers by lines along their sides; markers may be hidden in part. Empty where the board is not
+/// found. The board is dark on white; ChArUco boards are those of OpenCV before 4.6.1, with a dark square first. A
+/// chessboard with both numbers even or both odd, and a grid of circles with an even number of rows, may be read from
+/// the other end.
 std::vector<SeenPoint> find_board(const GreyImage& image, const Board& board);
 
 /// A marker's cells, row by row, border included; true is white. Throws InputError when the dictionary has none of that

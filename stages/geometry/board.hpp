@@ -12,8 +12,8 @@ namespace seampath {
 
 /// Circles are in an asymmetric grid, every other row moved by half their distance: a symmetric one looks the same from
 /// its other end.
-enum class BoardKind { chessboard, charuco, circles };
-inline constexpr std::array<std::string_view, 3> kBoardKindNames{"chessboard", "charuco", "circles"};
+enum class BoardKind { chessboard, charuco, circles, aruco };
+inline constexpr std::array<std::string_view, 4> kBoardKindNames{"chessboard", "charuco", "circles", "aruco"};
 
 /// Dictionaries of OpenCV's ArUco markers, in the order of its enumeration: bits a side, number of markers.
 inline constexpr std::array<std::string_view, 16> kMarkerDictionaryNames{
@@ -22,14 +22,16 @@ inline constexpr std::array<std::string_view, 16> kMarkerDictionaryNames{
 
 struct Board {
     BoardKind kind = BoardKind::chessboard;
-    int columns = 0;  ///< inner corners, squares (ChArUco) or circles of each row
+    int columns = 0;  ///< inner corners, squares (ChArUco), circles or markers (ArUco) of each row
     int rows = 0;
-    double pitch_mm = 0;  ///< side of a square, or distance of the rows of circles, half that of circles in a row
-    double size_mm = 0;   ///< diameter of a circle, or side of a marker; unused by a chessboard
-    int dictionary = 0;   ///< index of kMarkerDictionaryNames
+    double pitch_mm = 0;   ///< side of a square, distance of markers, or of the rows of circles, half that in a row
+    double size_mm = 0;    ///< diameter of a circle, or side of a marker; unused by a chessboard
+    int dictionary = 0;    ///< index of kMarkerDictionaryNames
+    int first_marker = 0;  ///< number of the first marker (ArUco); the others follow row by row
 };
 
-/// The points that are found on it, row by row from the first, mm: inner corners, or centres of circles.
+/// The points that are found on it, row by row from the first, mm: inner corners, centres of circles, or the four
+/// corners of each marker, clockwise from its first.
 std::vector<Eigen::Vector2d> points_of(const Board& board);
 
 }  // namespace seampath

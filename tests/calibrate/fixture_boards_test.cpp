@@ -79,6 +79,37 @@ TEST_F(FixtureBoards, GiveTheFrameWithinItsUncertainty) {
     EXPECT_THAT(moved.notes, testing::Contains(HasSubstr("not seen in the picture: B")));
 }
 
+// Markers of one dictionary on two boards are told apart by their numbers; some may be hidden.
+TEST_F(FixtureBoards, OfArucoMarkersMayBeOfOneDictionaryAndHiddenInPart) {
+    const Board board{BoardKind::aruco, 4, 3, 30, 22, 0, 12};
+    GreyImage image = draw_board(board, camera, place, {}, 1);
+    nominal["boards"][0]["board"] = {{"kind", "aruco"}, {"columns", 4},           {"rows", 3},         {"pitch_mm", 30},
+                                     {"marker_mm", 22}, {"dictionary", "4x4_50"}, {"first_marker", 12}};
+    Json other = nominal["boards"][0];
+    other["name"] = "B";
+    other["board"]["first_marker"] = 24;
+    nominal["boards"].push_back(other);
+    const Isometry3d truth = place * part_from_board.inverse();
+    const auto off = [&](const FrameResult& r) {
+        const Vector6 d = displacement(r.base_from_part, truth);
+        EXPECT_LT(d.dot(r.covariance.ldlt().solve(d)), 35) << "one in 200 000 of a chi-squared of 6";
+        return (r.base_from_part * Vector3d(120, -40, 15) - truth * Vector3d(120, -40, 15)).norm();
+    };
+    EXPECT_LT(off(calibrate(image).frame), 0.5);
+    const Eigen::Vector2d second = pixel_of(camera, place * Vector3d(41, 11, 0));
+    for (long row = std::lround(second.y()) - 12; row <= std::lround(second.y()) + 12; ++row) {
+        for (long column = std::lround(second.x()) - 12; column <= std::lround(second.x()) + 12; ++column) {
+            image.value[static_cast<std::size_t>(row * image.width + column)] = 255;
+        }
+    }
+    EXPECT_LT(off(calibrate(image).frame), 0.6);
+    nominal["boards"][1]["board"]["first_marker"] = 23;
+    EXPECT_THAT(error(image), HasSubstr("/boards/1: looks like \"A\" in a picture"));
+    nominal["boards"][1]["board"] = {{"kind", "aruco"}, {"columns", 1},           {"rows", 1},         {"pitch_mm", 30},
+                                     {"marker_mm", 22}, {"dictionary", "4x4_50"}, {"first_marker", 40}};
+    EXPECT_THAT(error(image), HasSubstr("one marker's four corners say too little"));
+}
+
 TEST_F(FixtureBoards, SayWhatTheyLack) {
     GreyImage blank = draw_board(test::corners(), camera, place, {}, 1);
     std::fill(blank.value.begin(), blank.value.end(), 128.0F);

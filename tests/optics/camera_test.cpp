@@ -138,8 +138,10 @@ TEST(LocateBoard, ItsCovarianceIsTrue) {
 // In pictures: points against their projection; a circle's middle is that of its image.
 TEST(FindBoard, EveryKindIsFoundToAFractionOfAPixel) {
     const CameraModel camera = test::small_camera();
-    const std::vector<Board> boards{
-        test::corners(), {BoardKind::charuco, 9, 6, 20, 15, 0}, {BoardKind::circles, 4, 9, 12, 9, 0}};
+    const std::vector<Board> boards{test::corners(),
+                                    {BoardKind::charuco, 9, 6, 20, 15, 0},
+                                    {BoardKind::circles, 4, 9, 12, 9, 0},
+                                    {BoardKind::aruco, 5, 4, 30, 22, 0, 7}};
     for (const Board& board : boards) {
         double squares = 0;
         std::size_t count = 0;
