@@ -18,7 +18,8 @@ enum FixtureStream : std::uint64_t {
     kFixtureMoved,
     kFixtureTouch,
     kFixtureSeams,
-    kFixtureBoard
+    kFixtureBoard,
+    kFixtureProbed
 };
 
 /// A scan in the making, seen along `sight` (unit, away from the sensor).
@@ -147,6 +148,43 @@ TouchedPart make_touched_part(std::uint64_t seed, double sigma_mm) {
     plane("A", {0, 0, 1}, {{20, 20, 0}, {380, 30, 0}, {150, 260, 0}, {350, 240, 0}});
     plane("B", {0, 1, 0}, {{30, 0, 20}, {370, 0, 50}});
     plane("C", {1, 0, 0}, {{0, 120, 30}});
+    return part;
+}
+
+ProbedPart make_probed_part(std::uint64_t seed, double sigma_mm) {
+    Draws placing(seed, kFixturePose), draws(seed, kFixtureProbed);
+    ProbedPart part;
+    part.base_from_part = placing.pose(800);
+    Isometry3d off = Isometry3d::Identity();
+    off.linear() = Eigen::AngleAxisd(portable::radians(draws.uniform(-2, 2)), draws.direction()).toRotationMatrix();
+    off.translation() = draws.uniform(0, 4) * draws.direction();
+    part.near = part.base_from_part * off;
+    const Vector3d sight = Vector3d(-1, -1.2, -1.6).normalized();
+    Exposure exposure(part.base_from_part, part.base_from_part.translation(), sigma_mm);
+    for (int i = 0; i < 60000; ++i) {
+        exposure.add({draws.uniform(0, 200), draws.uniform(0, 150), 0}, sight, draws);
+    }
+    for (int i = 0; i < 20000; ++i) {
+        exposure.add({draws.uniform(0, 200), 0, draws.uniform(0, 60)}, sight, draws);
+        exposure.add({0, draws.uniform(0, 150), draws.uniform(0, 60)}, sight, draws);
+    }
+    for (int i = 0; i < 6000; ++i) {  // a block on the first plane, a step on the second, and strays
+        exposure.add({draws.uniform(80, 120), draws.uniform(60, 100), 25}, sight, draws);
+        exposure.add({draws.uniform(90, 110), 4, draws.uniform(20, 40)}, sight, draws);
+        if (i % 10 == 0) {
+            exposure.add({draws.uniform(0, 200), draws.uniform(0, 150), draws.uniform(0, 60)}, sight, draws);
+        }
+    }
+    part.scan = std::move(exposure).scan();
+    const auto plane = [&](const char* name, const Vector3d& normal, const std::vector<Vector3d>& places) {
+        part.planes.push_back({name, normal, 0, {}});
+        for (const Vector3d& q : places) {
+            part.planes.back().touched.push_back({q, Vector3d::Zero(), 0});
+        }
+    };
+    plane("A", {0, 0, 1}, {{20, 20, 0}, {180, 25, 0}, {30, 130, 0}, {170, 125, 0}});
+    plane("B", {0, 1, 0}, {{20, 0, 30}, {180, 0, 35}});
+    plane("C", {1, 0, 0}, {{0, 80, 30}});
     return part;
 }
 

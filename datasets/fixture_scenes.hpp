@@ -46,6 +46,16 @@ struct TouchedPart {
 
 TouchedPart make_touched_part(std::uint64_t seed, double sigma_mm = 0.01);
 
+/// Three datum planes that meet in a corner, among clutter, in a scan.
+struct ProbedPart {
+    Scan scan;
+    Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d near = Eigen::Isometry3d::Identity();  ///< off by some mm and degrees
+    std::vector<DatumPlane> planes;                          ///< where they are to be probed
+};
+
+ProbedPart make_probed_part(std::uint64_t seed, double sigma_mm = 0.03);
+
 /// Corners of a board on a part, as a camera sees them.
 struct SeenBoard {
     CameraModel camera;

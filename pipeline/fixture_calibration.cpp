@@ -110,6 +110,27 @@ void from_planes(const std::vector<TouchedRow>& rows, FixtureCalibration& c) {
     c.frame = calibrate_planes(planes, c.nominal.work_points, c.nominal.frame);
 }
 
+void from_probed_planes(const Scan& scan, FixtureCalibration& c) {
+    std::vector<DatumPlane> planes;
+    for (const NominalPlane& nominal : c.nominal.planes) {
+        planes.push_back({nominal.name, nominal.normal, nominal.offset_mm, {}});
+        for (const NamedPoint& point : nominal.points) {
+            planes.back().touched.push_back({point.p, Vector3d::Zero(), 0});
+        }
+    }
+    const std::vector<PlaneProbe> probes = probe_planes(scan, planes, *c.nominal.probes);
+    auto probe = probes.begin();
+    for (const NominalPlane& nominal : c.nominal.planes) {
+        for (const NamedPoint& point : nominal.points) {
+            c.numbers.push_back({point.name + ": points", static_cast<double>(probe->points), ""});
+            c.numbers.push_back({point.name + ": noise of its points", probe->scale_mm, "mm"});
+            c.numbers.push_back({point.name + ": 1-sigma of the place", probe->sigma_mm, "mm"});
+            ++probe;
+        }
+    }
+    c.frame = calibrate_planes(planes, c.nominal.work_points, c.nominal.frame);
+}
+
 // The place at a share of a seam's length.
 Vector3d place_along(const NominalSeam& seam, double share) {
     std::vector<Vector3d> points = seam.points;
@@ -189,7 +210,17 @@ FixtureCalibration calibrate_fixture(const fs::path& observations, const fs::pat
             from_points(read_touched_points(observations, c.nominal.sigma_mm), c);
             break;
         case FixtureMethod::planes:
-            from_planes(read_touched_points(observations, c.nominal.sigma_mm), c);
+            if (c.nominal.probes) {
+                c.scan = read(observations, read_options);
+                from_probed_planes(*c.scan, c);
+            } else {
+                const std::string extension = observations.extension().string();
+                if (extension == ".ply" || extension == ".pcd") {
+                    throw InputError("planes: " + observations.string() +
+                                     " is a scan: \"near\", about base_from_part, was needed to probe it");
+                }
+                from_planes(read_touched_points(observations, c.nominal.sigma_mm), c);
+            }
             break;
         case FixtureMethod::best_fit:
             c.scan = read(observations, read_options);

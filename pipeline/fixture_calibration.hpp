@@ -54,8 +54,8 @@ FrameResult frame_from_boards(const std::filesystem::path& picture, const Nomina
                               std::vector<MethodNumber>& numbers);
 
 /// Measures the fixture in the observations: a scan for balls and surfaces, a table of touched points for points and
-/// planes, a run for seams, a picture for boards. Throws InputError for files that can't be read or do not fit the
-/// nominal one.
+/// planes, which a scan may show instead, a run for seams, a picture for boards. Throws InputError for files that can't
+/// be read or do not fit the nominal one.
 FixtureCalibration calibrate_fixture(const std::filesystem::path& observations, const std::filesystem::path& nominal,
                                      const ReadOptions& read_options);
 

@@ -204,14 +204,31 @@ NominalSeam seam_of(Object& object) {
     return seam;
 }
 
+std::optional<Eigen::Isometry3d> near_of(Object& root) {
+    if (!root.has("near")) {
+        return std::nullopt;
+    }
+    const Json near = root.part({"near"});
+    return pose_from(JsonObject(near, "", root.problems(), {"near"}), "near");
+}
+
+std::optional<ProbeOptions> probes_of(Object& root) {
+    const auto near = near_of(root);
+    if (!near) {
+        return std::nullopt;
+    }
+    ProbeOptions probes;
+    probes.near = *near;
+    root.number("patch_mm", false, probes.patch_mm, 0);
+    root.number("search_mm", false, probes.search_mm, 0);
+    return probes;
+}
+
 NominalSurfaceFile surface_of(Object& root, const std::filesystem::path& folder) {
     NominalSurfaceFile surface;
     root.number("least_share", false, surface.least_share, 0, true, 1);
     surface.scan_sensor_mm = root.vector_if_given("sensor_mm");
-    if (root.has("near")) {
-        const Json near = root.part({"near"});
-        surface.near = pose_from(JsonObject(near, "", root.problems(), {"near"}), "near");
-    }
+    surface.near = near_of(root);
     surface.file = folder / root.text("surface", true);
     surface.unit = static_cast<Unit>(root.choice("surface_unit", false, kUnitNames, 0));
     surface.surface_sensor_mm = root.vector_if_given("surface_sensor_mm");
@@ -233,8 +250,11 @@ void read_method(Object& root, const std::filesystem::path& folder, NominalFixtu
             root.each("points", true, [&](Object& o) { n.features.push_back(point_of(o)); });
             break;
         case FixtureMethod::planes:
-            root.number("sigma_mm", false, n.sigma_mm, 0);
+            if (!root.has("near")) {
+                root.number("sigma_mm", false, n.sigma_mm, 0);
+            }
             root.each("planes", true, [&](Object& o) { n.planes.push_back(plane_of(o)); });
+            n.probes = probes_of(root);
             break;
         case FixtureMethod::best_fit:
             n.surface = surface_of(root, folder);

@@ -62,6 +62,7 @@ struct NominalFixture {
     double sigma_mm = 0;               ///< 1-sigma of a touched point that names none of its own
     std::vector<NamedPoint> features;  ///< balls or points
     std::vector<NominalPlane> planes;
+    std::optional<ProbeOptions> probes;  ///< of planes that a scan shows, instead of touched ones
     NominalSurfaceFile surface;
     std::vector<NominalSeam> seams;
     NominalBoards boards;

@@ -86,9 +86,9 @@ int fixture(const FixtureArguments& given) {
 
 CLI::App* fixture_app(CLI::App& calibrate, FixtureArguments& given) {
     CLI::App* app = calibrate.add_subcommand("fixture", "where a part or fixture sits, and how sure that is");
-    app->add_option(
-           "OBSERVATIONS", given.observations,
-           "scan (balls, best-fit), table name,x,y,z (points, planes), folder of a run (seams), or picture (boards)")
+    app->add_option("OBSERVATIONS", given.observations,
+                    "scan (balls, best-fit, planes with near), table name,x,y,z (points, planes), folder of a run "
+                    "(seams), or picture (boards)")
         ->required();
     app->add_option("--nominal", given.nominal, "JSON: where the features are on the part")->required();
     app->add_option("--out", given.out, "folder for result, history and robot files")->required();

@@ -171,6 +171,27 @@ struct DatumPlane {
 FrameResult calibrate_planes(const std::vector<DatumPlane>& planes, const std::vector<WorkPoint>& work_points,
                              const FrameOptions& options);
 
+/// How a scan is probed in place of touching.
+struct ProbeOptions {
+    Eigen::Isometry3d near = Eigen::Isometry3d::Identity();  ///< about base_from_part: within 5 degrees
+    double patch_mm = 5;                                     ///< radius of what is taken of a plane about each place
+    double search_mm = 10;  ///< most that the scan's plane may lie off its nominal place in `near`
+};
+
+/// What a scan shows of a datum plane about one of its places.
+struct PlaneProbe {
+    std::string plane;
+    int points = 0;
+    double scale_mm = 0;  ///< robust 1-sigma of them
+    double sigma_mm = 0;  ///< of the place along the plane's normal
+};
+
+/// Sets where each place of the planes was met, and its sigma, by the scan's points about it: a robust plane through
+/// the layer that holds most of them, whose error may be shared by neighbours. Planes, places and probes are in the
+/// same order. Throws InputError where the scan shows too little of a plane, or another surface, and as
+/// calibrate_planes.
+std::vector<PlaneProbe> probe_planes(const Scan& scan, std::vector<DatumPlane>& planes, const ProbeOptions& options);
+
 struct BestFitOptions {
     FrameOptions frame;
     double least_share = 0.15;                                         ///< of the nominal surface that the scan shows

@@ -140,6 +140,20 @@ CaseResult touched_case(Touched kind, std::uint64_t first, int sets) {
     });
 }
 
+CaseResult probed_case(std::uint64_t first, int sets) {
+    return over_seeds(first, sets, [](std::uint64_t seed, CaseResult& result) {
+        ProbedPart part = make_probed_part(seed);
+        ProbeOptions probes;
+        probes.near = part.near;
+        probe_planes(part.scan, part.planes, probes);
+        FrameOptions options;
+        options.trials = 1000;
+        const FrameResult r = calibrate_planes(part.planes, {}, options);
+        measure(result, r, part.base_from_part, {300, 0, 0});
+        result.good += r.pass();
+    });
+}
+
 CaseResult board_case(std::uint64_t first, int sets) {
     return over_seeds(first, sets, [](std::uint64_t seed, CaseResult& result) {
         const SeenBoard made = make_seen_board(seed);

@@ -1,5 +1,8 @@
 #include "tests/calibrate/cases.hpp"
 
+#include <algorithm>
+#include <functional>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +30,7 @@ TEST(FixtureCases, TheBallThatMovedIsNamed) {
 TEST(FixtureCases, TouchedPointsPlanesAndBoardsReachTheNoisesOwnLimit) {
     constexpr int kSets = 40;
     for (const CaseResult& r : {touched_case(Touched::points, 1, kSets), touched_case(Touched::three_points, 1, kSets),
-                                touched_case(Touched::planes, 1, kSets), board_case(1, kSets)}) {
+                                touched_case(Touched::planes, 1, kSets), probed_case(1, kSets), board_case(1, kSets)}) {
         EXPECT_EQ(r.good, kSets) << r.note;
         EXPECT_NEAR(r.rms_mm / r.sigma_mm, 1, 0.25);
         EXPECT_GE(r.inside, 34);  // of 40 with 95 % each, fewer come once in 100
@@ -50,6 +53,49 @@ TEST(FixtureCases, PartsWithoutAPoseOfTheirOwnAreRefusedByName) {
     for (const std::uint64_t seed : {2, 5}) {  // a sleeve slides; a flange with four lugs turns by a quarter
         const CaseResult r = open_surface_case(seed, 1, 256);
         EXPECT_EQ(r.good, 1) << r.note;
+    }
+}
+
+/// What probing says of planes that the scan does not show as they are meant.
+std::string refusal(ProbedPart part, const std::function<void(ProbedPart&, ProbeOptions&)>& spoil) {
+    ProbeOptions options;
+    options.near = part.near;
+    spoil(part, options);
+    try {
+        probe_planes(part.scan, part.planes, options);
+        return "";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+TEST(ProbePlanes, SaysWhereTheScanDoesNotShowThem) {
+    const ProbedPart part = make_probed_part(3);
+    EXPECT_EQ(refusal(part, [](ProbedPart&, ProbeOptions&) {}), "");
+    EXPECT_THAT(refusal(part,
+                        [](ProbedPart& p, ProbeOptions&) {
+                            p.planes[1].touched[0].nominal = {20, 0, 90};
+                        }),
+                HasSubstr("datum plane B: about (20, 0, 90) the scan shows too little of it"));
+    EXPECT_THAT(
+        refusal(part, [](ProbedPart& p, ProbeOptions&) { p.planes[2].normal = Vector3d(1, 0.25, 0).normalized(); }),
+        HasSubstr("datum plane C: about (0, 80, 30)"));
+    EXPECT_THAT(refusal(part, [](ProbedPart&, ProbeOptions& o) { o.near.translation().x() += 300; }),
+                HasSubstr("check \"near\""));
+}
+
+TEST(ProbePlanes, OrderOfThePointsChangesNothing) {
+    ProbedPart part = make_probed_part(5), turned = part;
+    std::reverse(turned.scan.points.begin(), turned.scan.points.end());
+    ProbeOptions options;
+    options.near = part.near;
+    probe_planes(part.scan, part.planes, options);
+    probe_planes(turned.scan, turned.planes, options);
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < part.planes[k].touched.size(); ++i) {
+            EXPECT_EQ(part.planes[k].touched[i].measured, turned.planes[k].touched[i].measured);
+            EXPECT_EQ(part.planes[k].touched[i].sigma_mm, turned.planes[k].touched[i].sigma_mm);
+        }
     }
 }
 

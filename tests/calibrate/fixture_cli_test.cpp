@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "datasets/fixture_scenes.hpp"
+#include "pipeline/camera_json.hpp"
 #include "pipeline/fixture_calibration.hpp"
 #include "tests/cli/spawn.hpp"
 #include "tests/report/page.hpp"
@@ -141,6 +143,43 @@ TEST_F(FixtureCli, TheProgramOfARunMovesWithTheFixture) {
     const Outcome failed = seampath_program(run_small_tee(folder.path() / "failed", placed));
     EXPECT_EQ(failed.status, 2);
     EXPECT_THAT(failed.err, HasSubstr("did not pass"));
+}
+
+TEST_F(FixtureCli, ProbesDatumPlanesInAScan) {
+    const ProbedPart part = make_probed_part(2);
+    touched = folder.path() / "scan.xyz";
+    std::ofstream scan(touched);
+    scan.precision(9);
+    for (const Eigen::Vector3f& p : part.scan.points) {
+        scan << (part.scan.origin_mm + p.cast<double>()).transpose() << "\n";
+    }
+    scan.close();
+    nlohmann::ordered_json json{{"name", "corner"},
+                                {"method", "planes"},
+                                {"near", pose_numbers(part.near)},
+                                {"work_points", {{{"name", "nozzle"}, {"p_mm", {150, 100, 40}}}}}};
+    for (const DatumPlane& plane : part.planes) {
+        nlohmann::ordered_json points;
+        for (const TouchedPoint& place : plane.touched) {
+            const Eigen::Vector3d& p = place.nominal;
+            points.push_back({{"name", plane.name + std::to_string(points.size() + 1)}, {"p_mm", {p[0], p[1], p[2]}}});
+        }
+        const Eigen::Vector3d& n = plane.normal;
+        json["planes"].push_back(
+            {{"name", plane.name}, {"normal", {n[0], n[1], n[2]}}, {"offset_mm", plane.offset_mm}, {"points", points}});
+    }
+    write(nominal, json.dump());
+    const Outcome run = calibrate({"--unit", "mm"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const StoredFixture stored = read_fixture_result(out / "result.json");
+    const Eigen::Vector3d nozzle(150, 100, 40);
+    EXPECT_LT((stored.base_from_part * nozzle - part.base_from_part * nozzle).norm(), 0.02);
+    EXPECT_THAT(text_of(out / "result.json"), HasSubstr("A1: noise of its points"));
+    json["near"][0] = json["near"][0].get<double>() + 500;
+    write(nominal, json.dump());
+    const Outcome far = calibrate({"--unit", "mm"});
+    EXPECT_EQ(far.status, 2);
+    EXPECT_THAT(far.err, HasSubstr("datum plane A: about (20, 20, 0) the scan shows too little of it"));
 }
 
 TEST_F(FixtureCli, BadInputIsOneClearLineEach) {

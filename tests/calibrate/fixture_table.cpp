@@ -26,6 +26,7 @@ const std::vector<TableRow>& table_rows() {
          [](int sets) { return touched_case(Touched::three_points, 1, sets); }},
         {"planes 3-2-1", "rms/sigma 1, 90 to 98 % inside",
          [](int sets) { return touched_case(Touched::planes, 1, sets); }},
+        {"planes 3-2-1 of a scan", "rms/sigma 1, 90 to 98 % inside", [](int sets) { return probed_case(1, sets); }},
         {"points, all", "rms/sigma 1, 90 to 98 % inside",
          [](int sets) { return touched_case(Touched::points, 1, sets); }},
         {"board", "rms/sigma 1, 90 to 98 % inside", [](int sets) { return board_case(1, sets); }},
