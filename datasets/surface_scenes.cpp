@@ -223,8 +223,9 @@ SurfaceScan make_surface_scan(const SurfaceScene& scene, std::uint64_t seed) {
         box.extend(p);
     }
     world.add(clutter_mesh(box, clutter));
+    const double drawn = std::floor(viewing.uniform(0, 4)), quarter = scene.quarter.value_or(drawn);
     const double distance = 3.5 * box.diagonal().norm(),
-                 azimuth = portable::radians(90 * std::floor(viewing.uniform(0, 4)) + viewing.uniform(20, 70)),
+                 azimuth = portable::radians(90 * quarter + viewing.uniform(20, 70)),
                  elevation = portable::radians(viewing.uniform(35, 60));
     const Lens coarse =
         lens_at(box.center(), distance, azimuth, elevation, scene.width / 4, scene.height / 4, scene.width / 4.0);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "datasets/fixture_scenes.hpp"
@@ -24,6 +25,7 @@ struct SurfaceScene {
     int width = 640, height = 470;  ///< pixels: 300 800
     double share = 0.3;             ///< of the points that lie on the part
     double sigma_mm = 0.05;         ///< along the line of sight
+    std::optional<int> quarter;     ///< of a turn, from which it is seen; drawn where none is given
 };
 
 struct SurfaceScan {

@@ -116,6 +116,37 @@ FrameResult touched_points_frame(const TouchedPart& part, Touched kind, const Fr
                                                      rigid_through(nominal, measured));
 }
 
+/// A scan laid on a golden one, and the truth.
+struct GoldenSet {
+    BestFit fit;
+    Isometry3d truth;
+    Vector3d middle;  ///< of the part
+
+    bool near() const {
+        const Isometry3d& found = fit.frame.base_from_part;
+        return (found * middle - truth * middle).norm() <= 0.1 &&
+               displacement(truth, found).tail<3>().norm() <= 0.05 * std::numbers::pi / 180;
+    }
+};
+
+GoldenSet golden_set(SurfaceScene scene, std::uint64_t seed) {
+    scene.height = static_cast<int>(0.735 * scene.width);
+    const SurfaceScan seen = make_surface_scan(scene, seed);
+    const Scan nominal = golden_scan(make_surface_scan(scene, seed + 1000));
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3f& p : nominal.points) {
+        box.extend(p.cast<double>());
+    }
+    GoldenSet set{{}, seen.made.base_from_part, box.center()};
+    BestFitOptions options;
+    options.frame.trials = 1000;
+    Draws guess(seed, 977);
+    options.near = set.truth * Eigen::Translation3d(set.middle + 20 * guess.direction()) *
+                   Eigen::AngleAxisd(guess.uniform(0, 0.5), guess.direction()) * Eigen::Translation3d(-set.middle);
+    set.fit = calibrate_surface(seen.made.scan, nominal, {{"middle", set.middle}}, options);
+    return set;
+}
+
 }  // namespace
 
 CaseResult ball_case(std::uint64_t first, int sets) {
@@ -211,33 +242,33 @@ CaseResult golden_case(std::uint64_t first, int sets, int width) {
         SurfaceScene scene;
         scene.part = static_cast<FixturePart>(seed % kFixturePartNames.size());
         scene.width = width;
-        scene.height = static_cast<int>(0.735 * width);
-        const SurfaceScan seen = make_surface_scan(scene, seed);
-        const Scan nominal = golden_scan(make_surface_scan(scene, seed + 1000));
-        Eigen::AlignedBox3d box;
-        for (const Eigen::Vector3f& p : nominal.points) {
-            box.extend(p.cast<double>());
+        const GoldenSet set = golden_set(scene, seed);
+        const bool passed = set.fit.frame.pass();
+        result.good += !passed || set.near();
+        if (passed) {
+            measure(result, set.fit.frame, set.truth, set.middle);
         }
-        const Vector3d middle = box.center();
-        BestFitOptions options;
-        options.frame.trials = 1000;
-        Draws guess(seed, 977);
-        const Isometry3d& truth = seen.made.base_from_part;
-        options.near = truth * Eigen::Translation3d(middle + 20 * guess.direction()) *
-                       Eigen::AngleAxisd(guess.uniform(0, 0.5), guess.direction()) * Eigen::Translation3d(-middle);
-        const BestFit fit = calibrate_surface(seen.made.scan, nominal, {{"middle", middle}}, options);
-        if (!fit.frame.pass()) {
-            ++result.good;
-            return;
-        }
-        const Isometry3d& found = fit.frame.base_from_part;
-        measure(result, fit.frame, truth, middle);
-        const Vector6 off = displacement(truth, found);
-        const bool near =
-            (found * middle - truth * middle).norm() <= 0.1 && off.tail<3>().norm() <= 0.05 * std::numbers::pi / 180;
-        result.good += near;
-        if (!near) {
+        if (passed && !set.near()) {
             result.note += (result.note.empty() ? "wrong, and passed: seed " : ", ") + std::to_string(seed);
+        }
+    });
+}
+
+CaseResult same_side_case(std::uint64_t first, int sets, int width) {
+    return over_seeds(first, sets, [&](std::uint64_t seed, CaseResult& result) {
+        SurfaceScene scene;
+        scene.part = static_cast<FixturePart>(seed % kDefiniteParts);
+        scene.width = width;
+        scene.quarter = static_cast<int>(seed / kDefiniteParts % 4);
+        const GoldenSet set = golden_set(scene, seed);
+        const bool right = set.fit.frame.pass() && set.near();
+        result.good += right;
+        if (set.fit.frame.pass()) {
+            measure(result, set.fit.frame, set.truth, set.middle);
+        }
+        if (!right) {
+            result.note += (result.note.empty() ? "seed " : "; seed ") + std::to_string(seed) + ": " +
+                           (set.fit.frame.pass() ? "wrong, and passed" : set.fit.frame.faults.front());
         }
     });
 }

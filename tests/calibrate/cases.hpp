@@ -55,4 +55,8 @@ CaseResult open_surface_case(std::uint64_t first_seed, int sets, int width = 640
 /// degrees. Good within 0.1 mm at the part's middle and 0.05 degrees, or refused; those not refused are measured.
 CaseResult golden_case(std::uint64_t first_seed, int sets, int width = 640);
 
+/// The same of parts that have one pose, seen from the golden scan's side within 50 degrees, as a part that comes back
+/// to its fixture is. Good within those limits.
+CaseResult same_side_case(std::uint64_t first_seed, int sets, int width = 640);
+
 }  // namespace seampath

@@ -49,6 +49,12 @@ TEST(FixtureCases, OnAGoldenScanAFrameIsRightOrRefused) {
     EXPECT_GE(r.measured, 1);
 }
 
+TEST(FixtureCases, APartThatComesBackIsLaidOnItsGoldenScan) {
+    const CaseResult r = same_side_case(2, 3, 256);
+    EXPECT_EQ(r.good, 3) << r.note;
+    EXPECT_LE(r.largest_mm, 0.02);
+}
+
 TEST(FixtureCases, PartsWithoutAPoseOfTheirOwnAreRefusedByName) {
     for (const std::uint64_t seed : {2, 5}) {  // a sleeve slides; a flange with four lugs turns by a quarter
         const CaseResult r = open_surface_case(seed, 1, 256);

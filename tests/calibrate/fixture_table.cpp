@@ -34,6 +34,7 @@ const std::vector<TableRow>& table_rows() {
         {"best fit, open or alike", "all named", [](int sets) { return open_surface_case(1, sets); }},
         {"best fit to a mesh", ">= 99 % within 0.02 mm, 0.005 deg", [](int sets) { return surface_case(1, sets); }},
         {"best fit to a golden scan", "all right or refused", [](int sets) { return golden_case(1, sets); }},
+        {"golden scan, same side", "all right", [](int sets) { return same_side_case(1, sets); }},
     };
     return rows;
 }
