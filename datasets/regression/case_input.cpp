@@ -4,7 +4,7 @@
 
 #include "datasets/dataset.hpp"
 #include "datasets/depth_picture.hpp"
-#include "datasets/fixture_scenes.hpp"
+#include "datasets/fixtures/fixture_scenes.hpp"
 #include "datasets/stripe_sequence.hpp"
 #include "pipeline/files.hpp"
 #include "stages/error.hpp"

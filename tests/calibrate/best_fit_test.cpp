@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/surface_scenes.hpp"
+#include "datasets/fixtures/surface_scenes.hpp"
 #include "stages/calibrate/calibrate.hpp"
 #include "stages/error.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/fixture_draws.hpp"
+#include "datasets/fixtures/fixture_draws.hpp"
 #include "stages/error.hpp"
 #include "stages/optics/optics.hpp"
 

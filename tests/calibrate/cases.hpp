@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "datasets/fixture_scenes.hpp"
-#include "datasets/surface_scenes.hpp"
+#include "datasets/fixtures/fixture_scenes.hpp"
+#include "datasets/fixtures/surface_scenes.hpp"
 
 /// Calibrations of made scenes against their truth; a test looks at a few seeds, a program at all.
 namespace seampath {

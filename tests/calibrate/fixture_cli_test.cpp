@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "datasets/fixture_scenes.hpp"
+#include "datasets/fixtures/fixture_scenes.hpp"
 #include "pipeline/camera_json.hpp"
 #include "pipeline/fixture_calibration.hpp"
 #include "tests/cli/spawn.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "datasets/board_pictures.hpp"
-#include "datasets/fixture_draws.hpp"
+#include "datasets/fixtures/board_pictures.hpp"
+#include "datasets/fixtures/fixture_draws.hpp"
 #include "stages/optics/optics.hpp"
 
 /// A camera and boards that the tests of cameras and lasers share.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
-#include "datasets/board_pictures.hpp"
+#include "datasets/fixtures/board_pictures.hpp"
 #include "stages/angle.hpp"
 #include "stages/board/board.hpp"
 #include "stages/error.hpp"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "datasets/robot_scenes.hpp"
+#include "datasets/fixtures/robot_scenes.hpp"
 #include "pipeline/camera_json.hpp"
 #include "stages/geometry/pose.hpp"
 #include "stages/text.hpp"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/robot_scenes.hpp"
+#include "datasets/fixtures/robot_scenes.hpp"
 #include "stages/angle.hpp"
 #include "stages/error.hpp"
 
