@@ -30,6 +30,23 @@ double log_determinant(const Eigen::LDLT<MatrixXd>& ldlt) {
     return ldlt.vectorD().array().log().sum();
 }
 
+// Of a flank, the views that show it: what others send there are its edges, and strays.
+std::vector<bool> views_that_show(const std::vector<TrackPoint>& places, std::size_t k, std::size_t views) {
+    constexpr double kLeastShare = 0.03;  // of the points of the view that shows most
+    std::vector<double> count(views, 0);
+    for (const TrackPoint& place : places) {
+        for (const SlabPoint& point : place.slab[k]) {
+            count[point.view - 1] += 1;
+        }
+    }
+    const double most = *std::max_element(count.begin(), count.end());
+    std::vector<bool> shows;
+    for (const double n : count) {
+        shows.push_back(n > kLeastShare * most);
+    }
+    return shows;
+}
+
 // A polynomial over the distance from the seam.
 Vector3d row_of(double u) {
     return {1, u, u * u};
@@ -105,11 +122,14 @@ ViewShifts::Flank::Flank(const MeasuredWay& way, std::size_t k) {
     weight = VectorXd::Zero(views);
     H_y = VectorXd::Zero(3 * views);
     const std::vector<TrackPoint>& places = *way.places;
+    const std::vector<bool> shows = views_that_show(places, k, way.tracker.view_starts.size());
     for (std::size_t begin = 0; begin < places.size(); begin += kStretch) {
         Stretch stretch(views);
         for (std::size_t i = begin; i < std::min(places.size(), begin + kStretch); ++i) {
             for (const SlabPoint& point : places[i].slab[k]) {
-                stretch.add(point, places[begin].along, normal_of(places[i], k));
+                if (shows[point.view - 1]) {
+                    stretch.add(point, places[begin].along, normal_of(places[i], k));
+                }
             }
         }
         const double correlation = way.tracker.scale_at(places[begin].section).correlation;

@@ -9,7 +9,8 @@ namespace sigma_test {
 using Eigen::Vector3d;
 
 /// A corner along the x axis, put together from views with white noise, each shifted by N(0, registration) per axis.
-Scan views_of_corner(std::uint64_t seed, int views, double registration) {
+/// The last one may see the wall from behind: nothing of it but some points of its edge.
+Scan views_of_corner(std::uint64_t seed, int views, double registration, bool behind = false) {
     std::vector<Eigen::Vector3f> points;
     const Random random(seed, 77);
     for (int v = 0; v < views; ++v) {
@@ -21,7 +22,11 @@ Scan views_of_corner(std::uint64_t seed, int views, double registration) {
         for (double x = 0; x < 45; x += 0.5) {  // row by row, as a scanner
             const Sampling sampling{0.5, 0.045, seed * 100 + static_cast<std::uint64_t>(v)};
             add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.5, Vector3d::UnitY(), 20, sampling);
-            add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.5, Vector3d::UnitZ(), 20, sampling);
+            if (behind && v == views - 1) {
+                add_rectangle(points, {x, -0.15, 8}, Vector3d::UnitX(), 0.5, Vector3d::UnitZ(), 0.5, sampling);
+            } else {
+                add_rectangle(points, {x, 0, 0}, Vector3d::UnitX(), 0.5, Vector3d::UnitZ(), 20, sampling);
+            }
         }
         std::for_each(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(), [&](auto& p) { p += shift; });
     }
@@ -68,6 +73,23 @@ TEST(Sigma, HoldsWhereViewsAreShifted) {
     EXPECT_GT(c.one, 0.54);
     EXPECT_LT(c.one, 0.78);
     EXPECT_GT(c.two, 0.90);
+}
+
+// ... which would else pass for a shift of the views that do see it.
+TEST(Sigma, AViewThatSeesButAnEdgeOfAWallDoesNotMoveIt) {
+    constexpr int kScans = 6;
+    double off = 0;
+    for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
+        const Extraction extraction = extract(views_of_corner(seed, 4, 0.015, true), {});
+        ASSERT_EQ(extraction.seams.size(), 1u) << seed;
+        EXPECT_EQ(extraction.views, 4) << seed;
+        const Random random(seed, 77);
+        const double shift = 0.015 * (random.normal(1) + random.normal(4) + random.normal(7)) / 3;
+        for (const SeamPoint& point : extraction.seams.front().points) {
+            off += (point.p.y() - shift) / static_cast<double>(extraction.seams.front().points.size()) / kScans;
+        }
+    }
+    EXPECT_LT(std::abs(off), 0.003);
 }
 
 TEST(Sigma, OfOneViewIsThatOfItsNoise) {
