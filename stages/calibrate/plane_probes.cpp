@@ -2,11 +2,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include <Eigen/Dense>
 
 #include "stages/calibrate/calibrate.hpp"
 #include "stages/error.hpp"
+#include "stages/geometry/densest.hpp"
 #include "stages/geometry/grid.hpp"
 #include "stages/geometry/robust.hpp"
 #include "stages/text.hpp"
@@ -62,18 +64,7 @@ void keep_densest_layer(std::vector<PatchPoint>& points, double thickness) {
     for (const PatchPoint& p : points) {
         heights.push_back(p.w);
     }
-    std::sort(heights.begin(), heights.end());
-    std::size_t first = 0, most = 0;
-    double low = 0;
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-        while (heights[i] - heights[first] > thickness) {
-            ++first;
-        }
-        if (i - first + 1 > most) {
-            most = i - first + 1;
-            low = heights[first];
-        }
-    }
+    const double low = densest(std::move(heights), thickness).low;
     std::erase_if(points, [&](const PatchPoint& p) { return p.w < low || p.w > low + thickness; });
 }
 

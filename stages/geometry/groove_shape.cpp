@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "stages/angle.hpp"
+#include "stages/geometry/densest.hpp"
 #include "stages/geometry/groove_section.hpp"
 
 namespace seampath {
@@ -36,23 +37,6 @@ Vector2d top_beside(std::span<const GroovePoint> points, const Vector2d& corner,
     return best;
 }
 
-// The middle of the `width` that holds most of the values, and how many those are.
-std::pair<double, std::size_t> densest(std::vector<double> values, double width) {
-    std::sort(values.begin(), values.end());
-    std::size_t first = 0, most = 0;
-    double middle = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        while (values[i] - values[first] > width) {
-            ++first;
-        }
-        if (i - first + 1 > most) {
-            most = i - first + 1;
-            middle = values[first + (i - first) / 2];
-        }
-    }
-    return {middle, most};
-}
-
 }  // namespace
 
 std::optional<GrooveShape> shape_about(const PointGrid& grid, const ScanScale& scale, const GrooveFrame& frame,
@@ -73,11 +57,11 @@ std::optional<GrooveShape> shape_about(const PointGrid& grid, const ScanScale& s
                 off.push_back(away);
             }
         }
-        const auto [away, held] = densest(std::move(off), gate);
-        if (held < kFewest) {
+        const Densest bevel = densest(std::move(off), gate);
+        if (bevel.count < kFewest) {
             return std::nullopt;
         }
-        const Vector2d foot = away * n;
+        const Vector2d foot = bevel.middle * n;
         for (const GroovePoint& q : points) {
             const Vector2d v = q.section() - foot;
             if (std::abs(n.dot(v)) < gate + 0.02 * up.dot(v) && up.dot(v) > 0) {
