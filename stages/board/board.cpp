@@ -221,7 +221,7 @@ std::vector<Vector2d> marker_corners(const GreyImage& image, const std::vector<c
     for (const cv::Point2f& p : pixels) {
         corners.emplace_back(p.x, p.y);
     }
-    Vector2d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    const Vector2d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     for (int round = 0; round < kRounds; ++round) {
         std::array<Vector2d, 4> at, along;
         for (std::size_t k = 0; k < 4; ++k) {

@@ -24,8 +24,8 @@ constexpr double kPatchTukey = 4.685;
 constexpr double kPatchMadToSigma = 1.4826;
 constexpr double kLeastPatchScale = 1e-4;  // mm
 constexpr double kMostPatchTurn = 10 * std::numbers::pi / 180;
-constexpr double kFewestInPatch = 30;  // points of a patch
-constexpr int kCellsAcross = 5;        // a patch's parts, each of which may have an error of its own
+constexpr std::size_t kFewestInPatch = 30;  // points of a patch
+constexpr int kCellsAcross = 5;             // a patch's parts, each of which may have an error of its own
 constexpr std::size_t kFewestPatchCells = 8;
 
 /// Part of the scan about a place of a datum plane: across the plane u and v, in units of the patch's radius, and the
@@ -68,73 +68,77 @@ void keep_densest_layer(std::vector<PatchPoint>& points, double thickness) {
     std::erase_if(points, [&](const PatchPoint& p) { return p.w < low || p.w > low + thickness; });
 }
 
+Vector3d row_of(const PatchPoint& p) {
+    return {1, p.u, p.v};
+}
+
 /// The plane w = c0 + c1 u + c2 v through a patch.
 struct PatchPlane {
     Vector3d c{0, 0, 0};
     double white = 0, clustered = 0;  ///< mm^2, variance of c0 where errors are independent, and share cells
     double scale = 0;                 ///< mm, robust 1-sigma of the points
     int points = 0;
+
+    double residual(const PatchPoint& p) const { return p.w - row_of(p).dot(c); }
 };
 
-Vector3d row_of(const PatchPoint& p) {
-    return {1, p.u, p.v};
+// Tukey's biweight at a residual, by its share of the scale where weights end.
+double biweight(double x) {
+    return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
 }
 
-// Tukey's biweight. The clustered variance is that of Liang and Zeger (Biometrika 73, 1986), by cells. Empty where the
-// points cover too little of the patch.
-std::optional<PatchPlane> plane_through(const std::vector<PatchPoint>& points) {
-    if (points.size() < kFewestInPatch) {
-        return std::nullopt;
-    }
-    PatchPlane plane;
+// By re-weighted least squares; false when the points do not hold it.
+bool settle(PatchPlane& plane, const std::vector<PatchPoint>& points) {
+    constexpr int kMostRounds = 30;
     std::vector<double> weight(points.size(), 1);
-    Matrix3d H;
-    const auto residual = [&](std::size_t i) { return points[i].w - row_of(points[i]).dot(plane.c); };
-    for (int round = 0; round < 30; ++round) {
-        H.setZero();
+    for (int round = 0; round < kMostRounds; ++round) {
+        Matrix3d H = Matrix3d::Zero();
         Vector3d g = Vector3d::Zero();
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Vector3d row = row_of(points[i]);
             H += weight[i] * row * row.transpose();
-            g += weight[i] * row * residual(i);
+            g += weight[i] * row * plane.residual(points[i]);
         }
         const Vector3d step = H.ldlt().solve(g);
         if (!step.allFinite()) {
-            return std::nullopt;
+            return false;
         }
         plane.c += step;
         std::vector<double> off;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            off.push_back(std::abs(residual(i)));
+        for (const PatchPoint& p : points) {
+            off.push_back(std::abs(plane.residual(p)));
         }
         plane.scale = std::max(kLeastPatchScale, kPatchMadToSigma * quantile(off, 0.5));
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const double x = residual(i) / (kPatchTukey * plane.scale);
-            weight[i] = std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
+            weight[i] = biweight(plane.residual(points[i]) / (kPatchTukey * plane.scale));
         }
         if (round > 0 && step.norm() < 1e-6 * plane.scale) {
             break;
         }
     }
+    return true;
+}
+
+// The variances of c0. The clustered one is that of Liang and Zeger (Biometrika 73, 1986), by cells. False where the
+// points cover too little of the patch.
+bool take_variances(PatchPlane& plane, const std::vector<PatchPoint>& points) {
+    const auto part = [](double x) { return static_cast<int>(std::floor((x + 1) / 2 * kCellsAcross)); };
     std::map<std::pair<int, int>, Vector3d> cells;
     Matrix3d slopes = Matrix3d::Zero();  // of the weighted residuals, by the coefficients
-    Matrix3d squares = Matrix3d::Zero();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto part = [](double x) { return static_cast<int>(std::floor((x + 1) / 2 * kCellsAcross)); };
-        const Vector3d row = row_of(points[i]);
-        const double x = residual(i) / (kPatchTukey * plane.scale);
+    Matrix3d squares = Matrix3d::Zero(), scatter = Matrix3d::Zero();
+    for (const PatchPoint& p : points) {
+        const double residual = plane.residual(p), x = residual / (kPatchTukey * plane.scale);
         if (std::abs(x) < 1) {
-            auto& sum = cells.try_emplace({part(points[i].u), part(points[i].v)}, Vector3d::Zero()).first->second;
-            sum += weight[i] * residual(i) * row;
+            const Vector3d row = row_of(p), pull = biweight(x) * residual * row;
+            cells.try_emplace({part(p.u), part(p.v)}, Vector3d::Zero()).first->second += pull;
             slopes += (1 - x * x) * (1 - 5 * x * x) * row * row.transpose();
-            squares += weight[i] * weight[i] * residual(i) * residual(i) * row * row.transpose();
+            squares += pull * pull.transpose();
             plane.points += 1;
         }
     }
     if (cells.size() < kFewestPatchCells || !(slopes.determinant() > 0)) {
-        return std::nullopt;
+        return false;
     }
-    Matrix3d scatter = Matrix3d::Zero();
     for (const auto& [cell, sum] : cells) {
         scatter += sum * sum.transpose();
     }
@@ -142,7 +146,13 @@ std::optional<PatchPlane> plane_through(const std::vector<PatchPoint>& points) {
     const Matrix3d inverse = slopes.inverse();
     plane.white = (inverse * squares * inverse.transpose())(0, 0);
     plane.clustered = (freed * inverse * scatter * inverse.transpose())(0, 0);
-    return plane;
+    return true;
+}
+
+std::optional<PatchPlane> plane_through(const std::vector<PatchPoint>& points) {
+    PatchPlane plane;
+    const bool held = points.size() >= kFewestInPatch && settle(plane, points) && take_variances(plane, points);
+    return held ? std::optional(plane) : std::nullopt;
 }
 
 [[noreturn]] void refuse(const DatumPlane& plane, const Vector3d& nominal) {
@@ -189,7 +199,7 @@ std::vector<PlaneProbe> probe(const PointGrid& grid, const Isometry3d& pose, std
 }  // namespace
 
 std::vector<PlaneProbe> probe_planes(const Scan& scan, std::vector<DatumPlane>& planes, const ProbeOptions& options) {
-    constexpr int kRounds = 4;
+    constexpr int kMostRounds = 4;
     constexpr double kSettled = 1e-4;                 // mm
     constexpr double kNearTilt = 0.09, kTilt = 0.01;  // by which `near`, and a pose found, may be turned
     constexpr double kOff = 1;                        // mm, by which a pose found may be off
@@ -197,7 +207,7 @@ std::vector<PlaneProbe> probe_planes(const Scan& scan, std::vector<DatumPlane>& 
     Isometry3d pose = options.near;
     pose.translation() -= scan.origin_mm;
     std::vector<PlaneProbe> probes;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
         probes = round == 0 ? probe(grid, pose, planes, options.patch_mm, options.search_mm, kNearTilt)
                             : probe(grid, pose, planes, options.patch_mm, std::min(options.search_mm, kOff), kTilt);
         const Isometry3d next = calibrate_planes(planes, {}, {}).base_from_part;
