@@ -24,14 +24,17 @@ NominalBoard nominal_board(const Json& value, const std::string& place, std::vec
 
 // A picture can't tell which is which of two that look alike.
 bool look_alike(const Board& a, const Board& b) {
-    switch (a.kind == b.kind ? a.kind : BoardKind::chessboard) {
+    if (a.kind != b.kind) {
+        return false;
+    }
+    switch (a.kind) {
         case BoardKind::charuco:
             return a.dictionary == b.dictionary;
         case BoardKind::aruco:
             return a.dictionary == b.dictionary && a.first_marker < b.first_marker + b.columns * b.rows &&
                    b.first_marker < a.first_marker + a.columns * a.rows;
         default:
-            return a.kind == b.kind && a.columns == b.columns && a.rows == b.rows;
+            return a.columns == b.columns && a.rows == b.rows;
     }
 }
 

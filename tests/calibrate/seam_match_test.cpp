@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "datasets/fixtures/fixture_scenes.hpp"
 #include "stages/calibrate/calibrate.hpp"
 #include "stages/error.hpp"
 
@@ -41,32 +40,12 @@ Isometry3d far_pose() {
     return T;
 }
 
-/// The middle nine tenths of each seam, a point a millimetre, with noise across it.
 Seams measured(const std::vector<NominalSeam>& nominal, const Isometry3d& T, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise(0, kSigma);
-    Seams seams;
-    for (const NominalSeam& seam : nominal) {
-        std::vector<MeasuredSeamPoint> points;
-        for (std::size_t i = 0; i + 1 < seam.points.size(); ++i) {
-            const Vector3d a = seam.points[i], d = seam.points[i + 1] - a;
-            const Vector3d e0 = d.normalized().unitOrthogonal(), e1 = d.normalized().cross(e0);
-            const int steps = std::max(1, static_cast<int>(d.norm()));
-            for (int k = 0; k < steps; ++k) {
-                points.push_back({T * (a + d * k / steps + noise(random) * e0 + noise(random) * e1), kSigma});
-            }
-        }
-        const std::size_t cut = points.size() / 20;
-        points.erase(points.end() - static_cast<std::ptrdiff_t>(cut), points.end());
-        points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(cut));
-        seams.push_back(std::move(points));
-    }
-    return seams;
+    return measured_seams(nominal, T, kSigma, seed);
 }
 
 std::vector<NominalSeam> three() {
-    return {line("A", {0, 0, 0}, {180, 0, 0}), line("B", {0, 40, 0}, {0, 120, 60}),
-            arc("C", {120, 90, 20}, 45, 0.3, 3.9)};
+    return SeamScene().seams;
 }
 
 FrameOptions quick() {
