@@ -205,23 +205,18 @@ NominalSeam seam_of(Object& object) {
 }
 
 std::optional<Eigen::Isometry3d> near_of(Object& root) {
-    if (!root.has("near")) {
-        return std::nullopt;
-    }
     const Json near = root.part({"near"});
-    return pose_from(JsonObject(near, "", root.problems(), {"near"}), "near");
+    return near.empty() ? std::nullopt
+                        : std::optional(pose_from(JsonObject(near, "", root.problems(), {"near"}), "near"));
 }
 
 std::optional<ProbeOptions> probes_of(Object& root) {
     const auto near = near_of(root);
-    if (!near) {
-        return std::nullopt;
-    }
     ProbeOptions probes;
-    probes.near = *near;
+    probes.near = near.value_or(probes.near);
     root.number("patch_mm", false, probes.patch_mm, 0);
     root.number("search_mm", false, probes.search_mm, 0);
-    return probes;
+    return near ? std::optional(probes) : std::nullopt;
 }
 
 NominalSurfaceFile surface_of(Object& root, const std::filesystem::path& folder) {

@@ -175,6 +175,12 @@ TEST_F(FixtureCli, ProbesDatumPlanesInAScan) {
     const Eigen::Vector3d nozzle(150, 100, 40);
     EXPECT_LT((stored.base_from_part * nozzle - part.base_from_part * nozzle).norm(), 0.02);
     EXPECT_THAT(text_of(out / "result.json"), HasSubstr("A1: noise of its points"));
+    json["neer"] = json["near"];
+    json.erase("near");
+    write(nominal, json.dump());
+    EXPECT_THAT(calibrate({"--unit", "mm"}).err, AllOf(HasSubstr("/neer: there is no such key"), HasSubstr("near")));
+    json["near"] = json["neer"];
+    json.erase("neer");
     json["near"][0] = json["near"][0].get<double>() + 500;
     write(nominal, json.dump());
     const Outcome far = calibrate({"--unit", "mm"});
