@@ -70,9 +70,7 @@ double registration_that_counts(double registration_mm, std::size_t views, doubl
     // Two flanks see each view in two directions.
     constexpr double kBefore = 2;
     const double told = 2 * (static_cast<double>(views) - 1), freedom = told + kBefore, usual = noise_mm / 2;
-    const double variance = (told * registration_mm * registration_mm + kBefore * usual * usual) / freedom;
-    // 68 % of Student's t with f degrees of freedom lie within 1 + 0.6 / f.
-    return std::sqrt(variance) * (1 + 0.6 / freedom);
+    return std::sqrt((told * registration_mm * registration_mm + kBefore * usual * usual) / freedom);
 }
 
 // A shift b of a view changes the distances of its points by -n.b: the normal equations with that on their right side.

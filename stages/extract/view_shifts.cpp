@@ -222,13 +222,17 @@ double ViewShifts::of(std::size_t flank, const ViewShares& shares) const {
     return bias_.empty() ? 0 : shares.by_axis.dot(shift_) + shares.by_normal.dot(bias_[flank].value);
 }
 
-double ViewShifts::variance(std::size_t flank, const ViewShares& shares) const {
+ViewShifts::Unknown ViewShifts::unknown(std::size_t flank, const ViewShares& shares) const {
     if (bias_.empty()) {
-        return 0;
+        return {VectorXd::Zero(3 * index(views_)), 0};
     }
     const Bias& bias = bias_[flank];
     const VectorXd a = shares.by_axis - bias.by_shift.transpose() * shares.by_normal;
-    return a.dot(shift_covariance_ * a) + shares.by_normal.dot(bias.covariance * shares.by_normal);
+    return {a, a.dot(shift_covariance_ * a) + shares.by_normal.dot(bias.covariance * shares.by_normal)};
+}
+
+double ViewShifts::covariance(const Unknown& one, const Unknown& other) const {
+    return bias_.empty() ? 0 : one.by_shift.dot(shift_covariance_ * other.by_shift);
 }
 
 ViewShares shares_of_window(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t i, std::size_t k) {

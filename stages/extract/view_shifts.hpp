@@ -36,6 +36,12 @@ struct MeasuredWay {
 /// shift that all views have in common is in no scan: it stays as unknown as before.
 class ViewShifts {
 public:
+    /// What is unknown of where a place lies along the normal.
+    struct Unknown {
+        Eigen::VectorXd by_shift;  ///< how far it goes with the views' shifts: 3 numbers a view
+        double variance = 0;       ///< mm^2
+    };
+
     /// Flank k of way w is number 2 w + k. `registration` (mm): 1-sigma of a shift along one axis; 0: there are none.
     ViewShifts(std::span<const MeasuredWay> ways, double registration);
 
@@ -45,8 +51,10 @@ public:
     Eigen::Vector3d of(std::size_t flank, std::size_t view, const Eigen::Vector3d& n) const;
     /// The same of a place with these shares, along the normal.
     double of(std::size_t flank, const ViewShares& shares) const;
-    /// Variance of that, mm^2.
-    double variance(std::size_t flank, const ViewShares& shares) const;
+    /// What stays unknown of that.
+    Unknown unknown(std::size_t flank, const ViewShares& shares) const;
+    /// Covariance of what stays unknown of places on two flanks, mm^2.
+    double covariance(const Unknown& one, const Unknown& other) const;
 
 private:
     struct Flank;

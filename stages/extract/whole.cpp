@@ -18,7 +18,7 @@ namespace {
 struct FlankOfWay {
     FlankPool pool;
     FlankFit fit;
-    std::vector<double> shift;  ///< of each place, variance of what stays unknown of the views' shifts, mm^2
+    std::vector<ViewShifts::Unknown> shift;  ///< of each place, what stays unknown of the views' shifts
 };
 
 FlankOfWay flank_of(const Tracker& tracker, const ViewShifts& shifts, std::size_t number,
@@ -33,11 +33,19 @@ FlankOfWay flank_of(const Tracker& tracker, const ViewShifts& shifts, std::size_
     const double reach = tracker.window_of(scale).along / tracker.step;
     FlankOfWay flank{pool_of(places, static_cast<std::size_t>(std::lround(reach)), scale.correlation), {}, {}};
     flank.fit = fit_whole_flank(places, flank.pool, {flank.pool.reach, least_scale});
+    std::optional<ShiftOfSurface> moved;
     if (flank.fit.whole) {
-        const ShiftOfSurface shift(flank.fit.whole->surface, flank.pool, shifts.views());
-        for (const TrackPoint& place : way) {
-            flank.shift.push_back(shifts.variance(number, shift.at(place.section.p)));
+        moved.emplace(flank.fit.whole->surface, flank.pool, shifts.views());
+    }
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        ViewShifts::Unknown unknown = shifts.unknown(number, shares_of_window(tracker, way, i, k));
+        if (moved) {
+            const double share = flank.fit.whole->share[i];
+            const ViewShifts::Unknown whole = shifts.unknown(number, moved->at(way[i].section.p));
+            unknown.by_shift = (1 - share) * unknown.by_shift + share * whole.by_shift;
+            unknown.variance = (1 - share) * unknown.variance + share * whole.variance;
         }
+        flank.shift.push_back(std::move(unknown));
     }
     return flank;
 }
@@ -70,23 +78,22 @@ void settle(TrackPoint& place, std::size_t i, const std::array<FlankOfWay, 2>& f
     place.bend = std::atan2(axis.norm(), n[0].dot(n[1]));
 }
 
-// Variance of the place across flank k: what noise leaves and, which no fit sees, what the views' shifts do.
-double variance_across(const TrackPoint& place, std::size_t i, std::size_t k, const FlankOfWay& flank,
-                       double window_shift) {
+// Variance of the place across flank k that the points' noise leaves.
+double noise_across(const TrackPoint& place, std::size_t i, std::size_t k, const FlankOfWay& flank) {
     const auto& whole = flank.fit.whole;
     const double share = whole ? whole->share[i] : 0;
-    const double own = std::pow(place.flank_sigma[k], 2) + window_shift;
-    return (1 - share) * own + (whole ? share * (whole->at[i].variance + flank.shift[i]) : 0);
+    return (1 - share) * std::pow(place.flank_sigma[k], 2) + (whole ? share * whole->at[i].variance : 0);
 }
 
-// Of the windows of all places across one flank.
-std::vector<double> shift_of_windows(const Tracker& tracker, const ViewShifts& shifts, std::size_t number,
-                                     const std::vector<TrackPoint>& way) {
-    std::vector<double> variance;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        variance.push_back(shifts.variance(number, shares_of_window(tracker, way, i, number % 2)));
+// Of the distance of the place from the seam. Noise is each flank's own; a view's shift, which no fit sees, moves both
+// flanks together.
+double sigma_of(const TrackPoint& place, std::size_t i, const std::array<FlankOfWay, 2>& flanks,
+                const ViewShifts& shifts) {
+    double variance = -2 * std::cos(place.bend) * shifts.covariance(flanks[0].shift[i], flanks[1].shift[i]);
+    for (const std::size_t k : {0u, 1u}) {
+        variance += noise_across(place, i, k, flanks[k]) + flanks[k].shift[i].variance;
     }
-    return variance;
+    return std::sqrt(std::max(0.0, variance)) / std::max(1e-6, std::sin(place.bend));
 }
 
 SeamSurfaces settle_way(const Tracker& tracker, const ViewShifts& shifts, std::size_t first, double registration,
@@ -94,18 +101,12 @@ SeamSurfaces settle_way(const Tracker& tracker, const ViewShifts& shifts, std::s
     const double least_scale = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
     const std::array<FlankOfWay, 2> flanks{flank_of(tracker, shifts, first, way, least_scale),
                                            flank_of(tracker, shifts, first + 1, way, least_scale)};
-    const std::vector<double> shift[2] = {shift_of_windows(tracker, shifts, first, way),
-                                          shift_of_windows(tracker, shifts, first + 1, way)};
     for (std::size_t i = 0; i < way.size(); ++i) {
         if (way[i].modelled && !(flanks[0].fit.whole && flanks[1].fit.whole)) {
             continue;
         }
         settle(way[i], i, flanks);
-        double variance = 0;
-        for (const std::size_t k : {0u, 1u}) {
-            variance += variance_across(way[i], i, k, flanks[k], shift[k][i]);
-        }
-        way[i].sigma = std::sqrt(variance) / std::max(1e-6, std::sin(way[i].bend));
+        way[i].sigma = sigma_of(way[i], i, flanks, shifts);
     }
     const auto pooled = [](const FlankOfWay& flank) {
         const FlankFit& fit = flank.fit;
