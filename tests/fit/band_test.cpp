@@ -1,19 +1,13 @@
 #include <gtest/gtest.h>
 
+#include "tests/fit/measured_saddle.hpp"
 #include "tests/fit/models.hpp"
-#include "tests/papers/saddles.hpp"
 
 /// How good the smoothing spline is on a saddle, and how well it knows.
 namespace seampath {
 namespace band_test {
 
 using Eigen::Vector3d;
-
-FitOptions spline_model() {
-    FitOptions options;
-    options.model = FitModel::spline;
-    return options;
-}
 
 double half_width_at(const SeamModel& model, double station) {
     const auto& band = model.band;
@@ -70,26 +64,6 @@ Coverage coverage(const Curve& curve, bool closed, int points, double sigma, int
     return coverage;
 }
 
-/// Points of a saddle, of which a share is off by 2 mm anywhere to.
-Seam measured_saddle(const SaddleCurve& saddle, double off_share, std::uint64_t seed) {
-    constexpr int kPoints = 2000;
-    constexpr double kSigma = 0.1;
-    const Random random(seed, 0);
-    Seam seam;
-    seam.closed = true;
-    for (int i = 0; i < kPoints; ++i) {
-        const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / kPoints));
-        const auto k = 8 * static_cast<std::uint64_t>(i);
-        const Vector3d across = (at.n2 - at.n2.dot(at.n1) * at.n1).normalized();
-        Vector3d p = at.p + kSigma / std::sqrt(2.0) * (random.normal(k) * at.n1 + random.normal(k + 1) * across);
-        if (random.uniform(k + 2, 0, 1) < off_share) {
-            p += 2 * Vector3d(random.normal(k + 3), random.normal(k + 4), random.normal(k + 5)).normalized();
-        }
-        seam.points.push_back({p, at.n1, at.n2, kSigma, false});
-    }
-    return seam;
-}
-
 TEST(Band, HoldsTheTruthAsOftenAsItSays) {
     const auto check = [](const Coverage& c, const char* what) {
         EXPECT_GE(c.mean(), 0.93) << what;
@@ -109,7 +83,7 @@ TEST(Band, HoldsWhereTheSeamBendsHardest) {
     constexpr double kCrowns[] = {0.25, 0.75};
     int held = 0;
     for (std::uint64_t seed = 1; seed <= kScans; ++seed) {
-        const SeamModel model = fit(measured_saddle(saddle, 0, seed), {}, spline_model());
+        const SeamModel model = fit(measured_saddle(saddle, {}, seed), {}, spline_model());
         const ArcLength arc(model.curve);
         for (const double crown : kCrowns) {
             const Vector3d truth = saddle.at(2 * kPi * crown).p;
@@ -134,29 +108,14 @@ TEST(Band, IsWideWherePointsAreMissing) {
     EXPECT_GT(half_width_at(model, middle), 1.3 * half_width_at(model, middle + 2 * kPi * 30 / 2));
 }
 
-struct Errors {
-    double rms = 0, max = 0;
-};
-
-/// Of the spline through a saddle's points.
-Errors saddle_errors(const SaddleCurve& saddle, double off_share, std::uint64_t seed) {
-    constexpr int kLooks = 400;
-    const SeamModel model = fit(measured_saddle(saddle, off_share, seed), {}, spline_model());
-    Errors errors;
-    for (int i = 0; i < kLooks; ++i) {
-        const SaddlePoint at = saddle.at(saddle.theta(saddle.length() * i / kLooks));
-        const double off = (position(model.curve, nearest_parameter(model.curve, at.p)) - at.p).norm();
-        errors.rms += off * off / kLooks;
-        errors.max = std::max(errors.max, off);
-    }
-    errors.rms = std::sqrt(errors.rms);
-    return errors;
+SaddleErrors saddle_errors(const SaddleCurve& saddle, double off_share, std::uint64_t seed) {
+    return errors_of(fit(measured_saddle(saddle, {.off_share = off_share}, seed), {}, spline_model()), saddle);
 }
 
 TEST(Fit, FollowsNoisySaddlesWithOutliers) {
     const SaddleCurve small = pipes(600, 150), large = pipes(600, 588);
     for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-        const Errors errors = saddle_errors(small, 0.05, seed);
+        const SaddleErrors errors = saddle_errors(small, 0.05, seed);
         EXPECT_LE(errors.rms, 0.012) << seed;
         EXPECT_LE(errors.max, 0.03) << seed;
         EXPECT_LE(saddle_errors(large, 0.05, seed).rms, 0.035) << seed;
@@ -166,7 +125,7 @@ TEST(Fit, FollowsNoisySaddlesWithOutliers) {
 // Smooth against its points: a curve as stiff as this is at the edge of what knots at every point can hold.
 TEST(Fit, FollowsDensePointsWithoutOutliers) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-        const Errors errors = saddle_errors(pipes(600, 150), 0, seed);
+        const SaddleErrors errors = saddle_errors(pipes(600, 150), 0, seed);
         EXPECT_LE(errors.rms, 0.012) << seed;
         EXPECT_LE(errors.max, 0.03) << seed;
     }
