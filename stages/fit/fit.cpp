@@ -38,9 +38,8 @@ Normals averaged_normals(const Seam& seam) {
 }
 
 // What 19 of 20 distances from the model stay below, in the plane across it.
-std::vector<BandSample> band_of(const std::vector<CurveSigma>& sigma, const SeamModel& model) {
+std::vector<BandSample> band_of(const std::vector<CurveSigma>& sigma, const ArcLength& arc) {
     const double factor = std::sqrt(-2 * std::log(0.05));  // of a direction's sigma (Rayleigh)
-    const ArcLength arc(model.curve);
     std::vector<BandSample> band;
     for (const auto& [u, sigma_mm] : sigma) {
         band.push_back({arc.station(u), factor * sigma_mm});
@@ -48,9 +47,8 @@ std::vector<BandSample> band_of(const std::vector<CurveSigma>& sigma, const Seam
     return band;
 }
 
-std::vector<FlankSample> flank_samples(const Seam& seam, const SeamModel& model, const std::vector<double>& u,
+std::vector<FlankSample> flank_samples(const Seam& seam, const ArcLength& arc, const std::vector<double>& u,
                                        const Normals& normals) {
-    const ArcLength arc(model.curve);
     std::vector<FlankSample> samples;
     for (std::size_t i = 0; i < u.size(); ++i) {
         const SeamPoint& p = seam.points[i];
@@ -142,7 +140,7 @@ Normals fit_curve(const Seam& seam, const Nodes& nodes, const FitOptions& option
     }
     model.curve = smooth.curve;
     model.degrees_of_freedom = 3 * smooth.freedom;
-    model.band = band_of(smooth.sigma, model);
+    model.band = band_of(smooth.sigma, ArcLength(model.curve));
     return averaged_normals(seam);
 }
 
@@ -213,8 +211,9 @@ SeamModel fit(const Seam& seam, const Nodes& nodes, const FitOptions& options) {
     for (Eigen::Vector3d& control : model.curve.control) {
         control += middle;
     }
-    model.length_mm = ArcLength(model.curve).length();
-    model.flanks = flank_samples(seam, model, points.u, normals);
+    const ArcLength arc(model.curve);
+    model.length_mm = arc.length();
+    model.flanks = flank_samples(seam, arc, points.u, normals);
     return model;
 }
 

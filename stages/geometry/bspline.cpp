@@ -15,6 +15,9 @@ namespace {
 constexpr int kPiecesPerSpan = 4;
 
 double wrap(double u, double first, double period) {
+    if (u >= first && u < first + period) {
+        return u;
+    }
     const double turns = std::floor((u - first) / period);
     return std::clamp(u - turns * period, first, first + period);
 }
@@ -39,8 +42,16 @@ std::ptrdiff_t span_at(const std::vector<double>& knots, std::ptrdiff_t first, s
     return std::clamp<std::ptrdiff_t>(std::upper_bound(begin, end, u) - knots.begin() - 1, first, last);
 }
 
-double speed_integral(const CubicBSpline& curve, double a, double b) {
-    return gauss_legendre([&](double u) { return derivative(curve, u).norm(); }, a, b);
+// Knot j of a ring of n, which may lie some turns on or back.
+double knot_of_ring(const std::vector<double>& knots, std::ptrdiff_t n, double period, std::ptrdiff_t j) {
+    double turns = 0;
+    for (; j < 0; j += n) {
+        turns -= 1;
+    }
+    for (; j >= n; j -= n) {
+        turns += 1;
+    }
+    return knots[j] + turns * period;
 }
 
 template <class Weights>
@@ -56,6 +67,15 @@ CubicBasis basis_at(const CubicBSpline& curve, double u) {
     return cubic_basis(curve.knots, curve.control.size(), curve.periodic, u);
 }
 
+// Between a and b, which lie in one span: c' is a polynomial of degree 2 there, told by two places.
+double speed_integral(const CubicBSpline& curve, double a, double b) {
+    const double at = a + 0.25 * (b - a), apart = 0.5 * (b - a);
+    const CubicBasis one = basis_at(curve, at), other = basis_at(curve, at + apart);
+    const Eigen::Vector3d d1 = combine(curve, one, one.d1), d2 = combine(curve, one, one.d2);
+    const Eigen::Vector3d d3 = apart > 0 ? Eigen::Vector3d((combine(curve, other, other.d2) - d2) / apart) : d2;
+    return gauss_legendre([&](double u) { return (d1 + (u - at) * (d2 + 0.5 * (u - at) * d3)).norm(); }, a, b);
+}
+
 }  // namespace
 
 CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, bool periodic, double u) {
@@ -67,16 +87,9 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
         const double period = knots.back() - knots.front();
         u = wrap(u, knots.front(), period);
         const std::ptrdiff_t span = span_at(knots, 0, n - 1, u);
+        const bool inside = span >= 3 && span + 4 < n;
         for (std::ptrdiff_t k = 0; k < 8; ++k) {
-            std::ptrdiff_t j = span + k - 3;
-            double turns = 0;
-            for (; j < 0; j += n) {
-                turns -= 1;
-            }
-            for (; j >= n; j -= n) {
-                turns += 1;
-            }
-            t[k] = knots[j] + turns * period;
+            t[k] = inside ? knots[span + k - 3] : knot_of_ring(knots, n, period, span + k - 3);
         }
         for (std::ptrdiff_t k = 0; k < 4; ++k) {
             basis.control[k] = static_cast<std::size_t>(span + k < n ? span + k : (span + k) % n);
@@ -92,15 +105,21 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
         }
     }
     // Cox-de Boor, degree by degree: each function of degree d gives shares to two of degree d + 1. All of them are not
-    // zero on [t3, t4], so that no difference of knots below is.
+    // zero on [t3, t4], so that no difference of knots is. All divisions stand first: none waits for another.
+    std::array<std::array<double, 3>, 4> over;  // one over the length of function k of degree d - 1
+    for (int d = 1; d <= 3; ++d) {
+        for (int k = 0; k < d; ++k) {
+            over[d][k] = 1 / (t[4 + k] - t[4 - d + k]);
+        }
+    }
     std::array<double, 3> slope, bend;  // differences of the functions of degree 2 and 1, each over its knots
     std::array<double, 4> N{1, 0, 0, 0};
     for (int d = 1; d <= 3; ++d) {
         double carried = 0;
         for (int k = 0; k < d; ++k) {
-            const double begin = t[4 - d + k], end = t[4 + k], share = N[k] / (end - begin);
-            N[k] = carried + (end - u) * share;
-            carried = (u - begin) * share;
+            const double share = N[k] * over[d][k];
+            N[k] = carried + (t[4 + k] - u) * share;
+            carried = (u - t[4 - d + k]) * share;
             (d == 3 ? slope : bend)[k] = share;
         }
         N[d] = carried;
@@ -108,7 +127,7 @@ CubicBasis cubic_basis(const std::vector<double>& knots, std::size_t controls, b
             // The functions of degree 2 have the slopes 2 (share_{k-1} - share_k); their own differences follow.
             const std::array<double, 3> d1{-2 * bend[0], 2 * (bend[0] - bend[1]), 2 * bend[1]};
             for (int k = 0; k < 3; ++k) {
-                bend[k] = d1[k] / (t[4 + k] - t[1 + k]);
+                bend[k] = d1[k] * over[3][k];
             }
             basis.d2 = {-3 * bend[0], 3 * (bend[0] - bend[1]), 3 * (bend[1] - bend[2]), 3 * bend[2]};
         }

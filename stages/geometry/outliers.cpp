@@ -125,10 +125,11 @@ void weigh(CurvePoints& points, const std::vector<double>& given, const std::vec
     }
     const double scale = std::max(1.0, kMedianToSigma * quantile(off, 0.5));
     const std::vector<double> before = points.weight;
+    std::vector<double> same_side;
     for (std::ptrdiff_t i = 0; i < row.n; ++i) {
         // Where the neighbours are off to the same side, the curve is off: only what goes beyond them is the point's.
         const Eigen::Vector3d& r = residual[row(i)];
-        std::vector<double> same_side;
+        same_side.clear();
         for (std::ptrdiff_t k = i - kNear; k <= i + kNear; ++k) {
             if (k != i && row.has(k) && before[row(k)] > 0) {
                 same_side.push_back(residual[row(k)].dot(r) / std::max(r.norm(), 1e-300));
