@@ -104,6 +104,8 @@ void add(const Accuracy& a, JointResult& r) {
     r.wrong += a.passed_wrong;
     r.all_rms_mm = std::sqrt(mean_with(r.all_rms_mm * r.all_rms_mm, a.fitted.rms_mm * a.fitted.rms_mm));
     r.common_mm = std::sqrt(mean_with(r.common_mm * r.common_mm, a.common_mm * a.common_mm));
+    const double apart = a.fitted_apart.rms_mm;
+    r.apart_mm = std::sqrt(mean_with(r.apart_mm * r.apart_mm, apart * apart));
     r.rms_mm = std::max(r.rms_mm, a.fitted.rms_mm);
     r.max_mm = std::max(r.max_mm, a.fitted.max_mm);
     r.across_rms_mm = std::max(r.across_rms_mm, a.fitted.lateral_rms_mm);

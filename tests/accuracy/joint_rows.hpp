@@ -48,6 +48,7 @@ struct JointResult {
     double across_rms_mm = 0, across_max_mm = 0;
     double depth_rms_mm = 0, depth_max_mm = 0;
     double common_mm = 0;  ///< rms over all scans of what no method can see, as in Accuracy
+    double apart_mm = 0;   ///< rms over all scans of what is left beside that
     double found = 1, false_share = 0;
     double within_1_sigma = 0, within_2_sigma = 0;  ///< of extracted points, mean over scans
     std::size_t parameters = 0, parameters_1_sigma = 0, parameters_2_sigma = 0;  ///< of saddles

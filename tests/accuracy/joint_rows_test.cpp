@@ -33,6 +33,8 @@ TEST(JointRows, AreMeasuredOverScansOfOtherSeeds) {
     EXPECT_EQ(laps.wrong, 0u);
     EXPECT_GE(laps.rms_mm, laps.all_rms_mm);
     EXPECT_LT(laps.rms_mm, 0.05);
+    EXPECT_GT(laps.common_mm, 0.002);
+    EXPECT_LT(std::abs(laps.all_rms_mm - std::hypot(laps.common_mm, laps.apart_mm)), 0.005);
     EXPECT_GT(laps.found, 0.97);
     EXPECT_EQ(laps.parameters, 0u);
     const JointResult saddle = measure_row(row_of(rows, "sigma, saddle"), 2, 1);
