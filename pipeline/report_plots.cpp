@@ -259,11 +259,14 @@ std::string speed_plot(const PartResult& part, std::size_t seam) {
     for (const PlotPoint& p : speeds) {
         most = std::max(most, p.y);
     }
+    const std::vector<PlotPoint> planned = planned_speed(part, seam);
     const PlotAxes axes{kNarrowPlot,   kNarrowHeight, 0, part.models[seam].length_mm, 0, padded(most, 1e-3),
                         "station, mm", "speed, mm/s"};
-    return figure("by-station", "<b>Torch speed</b> of the straight moves, " + decimal(wanted, 1) + " mm/s asked for",
+    return figure("by-station",
+                  "<b>Torch speed</b> <i class=\"value\"></i>planned <i class=\"flank1\"></i>mean of each move, " +
+                      decimal(wanted, 1) + " mm/s asked for",
                   svg_axes(axes, "Torch speed along the seam") + svg_level(axes, wanted, "", "quantile") +
-                      svg_line(axes, speeds, "value") + svg_end());
+                      svg_line(axes, speeds, "flank1") + svg_line(axes, planned, "value") + svg_end());
 }
 
 }  // namespace

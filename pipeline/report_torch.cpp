@@ -90,6 +90,15 @@ constexpr Pair kAngles{"Torch angles along the seam",
                        "<i class=\"flank1\"></i>travel, pointing ahead",
                        1};
 
+std::vector<TravelSample> travel_of(const PartResult& part, std::size_t seam) {
+    const auto planned = std::find(part.planned_seams.begin(), part.planned_seams.end(), static_cast<int>(seam));
+    const auto number = static_cast<int>(planned - part.planned_seams.begin());
+    std::vector<TravelSample> travel;
+    std::copy_if(part.plan.travel.begin(), part.plan.travel.end(), std::back_inserter(travel),
+                 [number](const TravelSample& s) { return s.seam == number; });
+    return travel;
+}
+
 }  // namespace
 
 ReportRows torch_rows(const Plan& plan) {
@@ -111,12 +120,12 @@ ReportRows torch_rows(const Plan& plan) {
     return rows;
 }
 
+std::vector<PlotPoint> planned_speed(const PartResult& part, std::size_t seam) {
+    return line_of(travel_of(part, seam), [](const TravelSample& s) { return s.speed_mm_s; });
+}
+
 std::string torch_plots(const PartResult& part, std::size_t seam) {
-    const auto planned = std::find(part.planned_seams.begin(), part.planned_seams.end(), static_cast<int>(seam));
-    const auto number = static_cast<int>(planned - part.planned_seams.begin());
-    std::vector<TravelSample> travel;
-    std::copy_if(part.plan.travel.begin(), part.plan.travel.end(), std::back_inserter(travel),
-                 [number](const TravelSample& s) { return s.seam == number; });
+    const std::vector<TravelSample> travel = travel_of(part, seam);
     return travel.empty() ? "" : pair_plot(travel, kAccelerations) + pair_plot(travel, kAngles);
 }
 

@@ -122,6 +122,13 @@ std::string_view verdict(const PartResult& part) {
                                  : "out of tolerance";
 }
 
+std::string programs_summary(const PartResult& part, const std::string& folder) {
+    if (!part.programs.empty()) {
+        return folder;
+    }
+    return "none: " + std::string(part.planned_seams.empty() ? "no seam may be welded" : verdict(part));
+}
+
 std::string seam_table(const PartResult& part) {
     std::vector<std::vector<std::string>> rows{
         {"seam", "kind", "", "length mm", "rms mm", "max mm", "sigma mm", "coverage", "verdict"}};

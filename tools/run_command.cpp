@@ -109,11 +109,7 @@ void print_result(const Part& part, const PartResult& result) {
         std::cout << "arm       " << result.plan.arm->verdict << "\n";
     }
     std::cout << "report    " << (part.folder / "report.html").string() << "\n";
-    std::cout << "programs  "
-              << (result.programs.empty()
-                      ? (result.planned_seams.empty() ? "none: no seam may be welded" : "none: the arm can't make it")
-                      : (part.folder / "programs").string())
-              << "\n";
+    std::cout << "programs  " << programs_summary(result, (part.folder / "programs").string()) << "\n";
 }
 
 int run_one(Part& part, const RunArguments& given, const Config& config) {

@@ -6,6 +6,7 @@
 
 #include "pipeline/files.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/summary.hpp"
 #include "pipeline/text.hpp"
 #include "stages/angle.hpp"
 #include "stages/error.hpp"
@@ -181,11 +182,10 @@ int saddle(const SaddleArguments& given) {
         std::cout << text;
     } else {
         const fs::path out = given.out;
-        std::cout << saddle_facts_text(
-            facts, part,
-            {{"points", (out / kPointsFile).string()},
-             {"report", (out / "report.html").string()},
-             {"programs", part.programs.empty() ? "none: the arm can't make it" : (out / "programs").string()}});
+        std::cout << saddle_facts_text(facts, part,
+                                       {{"points", (out / kPointsFile).string()},
+                                        {"report", (out / "report.html").string()},
+                                        {"programs", programs_summary(part, (out / "programs").string())}});
     }
     return part.pass() ? kPass : kOutOfTolerance;
 }

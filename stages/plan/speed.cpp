@@ -273,6 +273,18 @@ double SpeedProfile::move_speed(double from, double to) const {
     return std::abs(mean - speed_) <= 1e-9 * speed_ ? speed_ : mean;
 }
 
+std::vector<double> SpeedProfile::telling() const {
+    constexpr int kMoments = 16;  // even: the acceleration is largest half way
+    std::vector<double> stations = changes();
+    for (int k = 1; k <= kMoments; ++k) {
+        const double share = static_cast<double>(k) / kMoments;
+        stations.push_back(run_in_.way(share * run_in_.duration()));
+        stations.push_back(length_ - run_out_.way(share * run_out_.duration()));
+    }
+    std::sort(stations.begin(), stations.end());
+    return stations;
+}
+
 std::vector<double> SpeedProfile::changes() const {
     std::vector<double> stations;
     double told = std::numeric_limits<double>::infinity();

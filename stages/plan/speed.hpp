@@ -54,6 +54,10 @@ public:
     /// where it begins to change, and on the way.
     std::vector<double> changes() const;
 
+    /// Stations that show how the torch gets to its speed and comes to rest: at equal times of run-in and run-out, that
+    /// of the largest acceleration among them; and those of changes(). Ascending.
+    std::vector<double> telling() const;
+
 private:
     struct Cell {
         double from;            // station

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -76,16 +77,24 @@ public:
 
     void tell_travel() {
         const int index = static_cast<int>(result_.welds.size());
-        TorchPose before = path_.at_station(0);
+        const double length = path_.arc().length();
+        std::vector<double> stations = profile_.telling();
         for (int k = 0; k <= kTravelSamples; ++k) {
-            const double length = path_.arc().length();
-            const TorchPose pose = path_.at_station(k == kTravelSamples ? length : length * k / kTravelSamples);
-            const double v = profile_.speed(pose.station_mm), way = pose.station_mm - before.station_mm;
+            stations.push_back(k == kTravelSamples ? length : length * k / kTravelSamples);
+        }
+        std::sort(stations.begin(), stations.end());
+        std::optional<TorchPose> before;
+        for (const double station : stations) {
+            if (before && station - before->station_mm < kSamePlace_mm) {
+                continue;
+            }
+            const TorchPose pose = path_.at_station(station);
+            const double v = profile_.speed(pose.station_mm), way = before ? pose.station_mm - before->station_mm : 0;
             const Lean lean = path_.lean(pose);
             result_.travel.push_back(
                 {path_.seam(), index, path_.before_mm() + pose.station_mm, v, profile_.acceleration(pose.station_mm),
                  v * v * curvature(path_.arc().curve(), pose.u),
-                 way > 0 ? v * rotation_angle(before.q, pose.q) / way : 0, lean.work, lean.travel});
+                 way > 0 ? v * rotation_angle(before->q, pose.q) / way : 0, lean.work, lean.travel});
             before = pose;
         }
     }

@@ -72,7 +72,16 @@ TEST(Faults, OutOfToleranceIsStatus1WithoutPrograms) {
         seampath_program({"run", small_tee(), "--out", out.path(), "--set", "validate.tolerance_mm=0.000001"});
     EXPECT_EQ(run.status, 1) << run.err;
     EXPECT_THAT(run.out, HasSubstr("scan: out of tolerance"));
-    EXPECT_THAT(run.out, HasSubstr("programs  none"));
+    EXPECT_THAT(run.out, HasSubstr("programs  none: no seam may be welded"));
+    EXPECT_FALSE(fs::exists(out.path() / "programs" / "abb"));
+}
+
+TEST(Faults, NoRoomForTheTorchIsSaidToBeThat) {
+    const TestFolder out;
+    const Outcome run = seampath_program({"run", small_tee(), "--out", out.path(), "--set", "plan.nozzle_tip_mm=60",
+                                          "--set", "plan.nozzle_base_mm=80", "--set", "plan.stick_out_mm=2"});
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("programs  none: no room for the torch"));
     EXPECT_FALSE(fs::exists(out.path() / "programs" / "abb"));
 }
 

@@ -225,6 +225,27 @@ std::vector<Waypoint> weld_of(const Plan& plan) {
     return weld;
 }
 
+// A run-in is shorter than the way between two places that are told evenly.
+TEST(Travel, ShowsHowTheTorchGetsToItsSpeed) {
+    PlanOptions options;
+    options.run_in = RunIn::within;
+    const SeamModel m = test::model_of(test::helix(35, 30), false, 120);
+    const std::vector<TravelSample> travel = plan({&m, 1}, options).travel;
+    const Ramp ramp(options.speed_mm_s, options.acceleration_mm_s2, options.jerk_mm_s3);
+    double forward = 0, back = 0;
+    for (std::size_t k = 0; k < travel.size(); ++k) {
+        forward = std::max(forward, travel[k].acceleration_mm_s2);
+        back = std::min(back, travel[k].acceleration_mm_s2);
+        EXPECT_TRUE(k == 0 || travel[k].station_mm > travel[k - 1].station_mm);
+    }
+    const double most = ramp.acceleration(0.5 * ramp.duration());
+    EXPECT_GT(most, 100);
+    EXPECT_NEAR(forward, most, 1e-6 * most);
+    EXPECT_NEAR(back, -most, 1e-6 * most);
+    EXPECT_NEAR(travel.front().speed_mm_s, 0, 1e-9);
+    EXPECT_NEAR(travel.back().speed_mm_s, 0, 1e-9);
+}
+
 TEST(PlanOutput, EqualTimes) {
     for (const RunIn run_in : {RunIn::none, RunIn::within}) {
         PlanOptions options = fast();
