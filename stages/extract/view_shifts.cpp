@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include "stages/geometry/parallel.hpp"
+
 namespace seampath::detail {
 namespace {
 
@@ -99,6 +101,39 @@ private:
     Vector3d surface_off_ = Vector3d::Zero();
 };
 
+/// Over points: how often, and the powers of their distances u from the seam.
+struct PowerSums {
+    Eigen::Matrix<double, 5, 1> all = Eigen::Matrix<double, 5, 1>::Zero();
+    Matrix3Xd by_view;
+
+    explicit PowerSums(Index views) : by_view(Matrix3Xd::Zero(3, views)) {}
+    void add(double u, Index view) {
+        const double square = u * u;
+        all += Eigen::Matrix<double, 5, 1>{1, u, square, square * u, square * square};
+        by_view.col(view) += Vector3d(1, u, square);
+    }
+    /// Of a parabola through the points, at the seam; of their mean, where no distances tell one.
+    ViewShares shares(double unit_u, const Vector3d& n) const {
+        const Index views = by_view.cols();
+        ViewShares shares{VectorXd::Zero(3 * views), VectorXd::Zero(views)};
+        if (!(all[0] > 0)) {
+            return shares;
+        }
+        const Vector3d unit = row_of(1 / unit_u);
+        Eigen::Matrix3d normal;
+        normal << all[0], all[1], all[2], all[1], all[2], all[3], all[2], all[3], all[4];
+        normal = unit.asDiagonal() * normal * unit.asDiagonal();
+        const Eigen::LDLT<Eigen::Matrix3d> ldlt(normal);
+        const bool bent = ldlt.vectorD().minCoeff() > 1e-9 * ldlt.vectorD().maxCoeff();
+        const Vector3d at_seam = bent ? Vector3d(ldlt.solve(Vector3d::UnitX())) : Vector3d(1 / all[0], 0, 0);
+        shares.by_normal = by_view.transpose() * unit.cwiseProduct(at_seam);
+        for (Index v = 0; v < views; ++v) {
+            shares.by_axis.segment<3>(3 * v) = shares.by_normal[v] * n;
+        }
+        return shares;
+    }
+};
+
 }  // namespace
 
 /// Sums over the stretches of one flank of their equations M x = y, with H the normals that lead from shifts to x.
@@ -109,6 +144,7 @@ struct ViewShifts::Flank {
     double squares = 0;  ///< of what the views explain of the points' distances
     double freedom = 0;
 
+    Flank() = default;
     Flank(const MeasuredWay& way, std::size_t k);
     void add(const Stretch& stretch, double variance);
 };
@@ -164,11 +200,8 @@ ViewShifts::ViewShifts(std::span<const MeasuredWay> ways, double registration)
     if (views_ < 2 || !(registration > 0)) {
         return;
     }
-    std::vector<Flank> flanks;
-    for (const MeasuredWay& way : ways) {
-        flanks.emplace_back(way, 0);
-        flanks.emplace_back(way, 1);
-    }
+    std::vector<Flank> flanks(2 * ways.size());
+    parallel_for(flanks.size(), 1, [&](std::size_t k) { flanks[k] = Flank(ways[k / 2], k % 2); });
     struct {
         double likelihood = -std::numeric_limits<double>::infinity(), noise = 1, bias = 0;
     } best;
@@ -235,38 +268,34 @@ double ViewShifts::covariance(const Unknown& one, const Unknown& other) const {
     return bias_.empty() ? 0 : one.by_shift.dot(shift_covariance_ * other.by_shift);
 }
 
-ViewShares shares_of_window(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t i, std::size_t k) {
+std::vector<ViewShares> shares_of_windows(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t k) {
     const auto views = index(tracker.view_starts.size());
-    const auto reach = static_cast<std::size_t>(std::lround(way[i].along / tracker.step));
     const bool level = k == 1 && tracker.wall;
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Matrix3Xd by_view = Matrix3Xd::Zero(3, views);
-    for (std::size_t j = i > reach ? i - reach : 0; j < std::min(way.size(), i + reach + 1); ++j) {
-        for (const SlabPoint& point : way[j].slab[k]) {
-            const Vector3d row = level ? Vector3d(1, 0, 0) : row_of(point.u / way[i].along);
-            normal += row * row.transpose();
-            by_view.col(index(point.view) - 1) += row;
+    std::vector<PowerSums> at(way.size(), PowerSums(views));
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        for (const SlabPoint& point : way[i].slab[k]) {
+            at[i].add(level ? 0 : point.u, index(point.view) - 1);
         }
     }
-    ViewShares shares{VectorXd::Zero(3 * views), VectorXd::Zero(views)};
-    if (!(normal(0, 0) > 0)) {
-        return shares;
-    }
-    const Eigen::LDLT<Eigen::Matrix3d> ldlt(normal);
-    const bool bent = ldlt.vectorD().minCoeff() > 1e-9 * ldlt.vectorD().maxCoeff();
-    const Vector3d at_seam = bent ? Vector3d(ldlt.solve(Vector3d::UnitX())) : Vector3d(1 / normal(0, 0), 0, 0);
-    shares.by_normal = by_view.transpose() * at_seam;
-    for (Index v = 0; v < views; ++v) {
-        shares.by_axis.segment<3>(3 * v) = shares.by_normal[v] * normal_of(way[i], k);
+    std::vector<ViewShares> shares;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        const auto reach = static_cast<std::size_t>(std::lround(way[i].along / tracker.step));
+        PowerSums window(views);
+        for (std::size_t j = i > reach ? i - reach : 0; j < std::min(way.size(), i + reach + 1); ++j) {
+            window.all += at[j].all;
+            window.by_view += at[j].by_view;
+        }
+        shares.push_back(window.shares(way[i].along, normal_of(way[i], k)));
     }
     return shares;
 }
 
 void take_back(const Tracker& tracker, const ViewShifts& shifts, std::size_t first, std::vector<TrackPoint>& way) {
     std::vector<std::array<double, 2>> moved(way.size());  // each place, across both flanks
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        for (const std::size_t k : {0u, 1u}) {
-            moved[i][k] = shifts.of(first + k, shares_of_window(tracker, way, i, k));
+    for (const std::size_t k : {0u, 1u}) {
+        const std::vector<ViewShares> shares = shares_of_windows(tracker, way, k);
+        for (std::size_t i = 0; i < way.size(); ++i) {
+            moved[i][k] = shifts.of(first + k, shares[i]);
         }
     }
     for (std::size_t i = 0; i < way.size(); ++i) {

@@ -18,9 +18,9 @@ struct ViewShares {
     Eigen::VectorXd by_normal;  ///< 1 number a view
 };
 
-/// Of place i of a way, across flank k: measured by a parabola through the points about it, over their distances from
-/// the seam; by their mean, where it is a wall whose angle is known.
-ViewShares shares_of_window(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t i, std::size_t k);
+/// Of each place of a way, across flank k: measured by a parabola through the points about it, over their distances
+/// from the seam; by their mean, where it is a wall whose angle is known.
+std::vector<ViewShares> shares_of_windows(const Tracker& tracker, const std::vector<TrackPoint>& way, std::size_t k);
 
 /// The places of a seam, and with what they were measured.
 struct MeasuredWay {

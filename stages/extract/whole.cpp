@@ -9,6 +9,7 @@
 
 #include "stages/extract/joint.hpp"
 #include "stages/extract/registration.hpp"
+#include "stages/geometry/parallel.hpp"
 #include "stages/geometry/whole_flank.hpp"
 
 namespace seampath::detail {
@@ -37,8 +38,9 @@ FlankOfWay flank_of(const Tracker& tracker, const ViewShifts& shifts, std::size_
     if (flank.fit.whole) {
         moved.emplace(flank.fit.whole->surface, flank.pool, shifts.views());
     }
+    const std::vector<ViewShares> windows = shares_of_windows(tracker, way, k);
     for (std::size_t i = 0; i < way.size(); ++i) {
-        ViewShifts::Unknown unknown = shifts.unknown(number, shares_of_window(tracker, way, i, k));
+        ViewShifts::Unknown unknown = shifts.unknown(number, windows[i]);
         if (moved) {
             const double share = flank.fit.whole->share[i];
             const ViewShifts::Unknown whole = shifts.unknown(number, moved->at(way[i].section.p));
@@ -99,8 +101,8 @@ double sigma_of(const TrackPoint& place, std::size_t i, const std::array<FlankOf
 SeamSurfaces settle_way(const Tracker& tracker, const ViewShifts& shifts, std::size_t first, double registration,
                         std::vector<TrackPoint>& way) {
     const double least_scale = 0.3 * noise_of(tracker.scale_at(way[way.size() / 2].section));
-    const std::array<FlankOfWay, 2> flanks{flank_of(tracker, shifts, first, way, least_scale),
-                                           flank_of(tracker, shifts, first + 1, way, least_scale)};
+    std::array<FlankOfWay, 2> flanks;
+    parallel_for(2, 1, [&](std::size_t k) { flanks[k] = flank_of(tracker, shifts, first + k, way, least_scale); });
     for (std::size_t i = 0; i < way.size(); ++i) {
         if (way[i].modelled && !(flanks[0].fit.whole && flanks[1].fit.whole)) {
             continue;
