@@ -101,12 +101,20 @@ std::string mean_table(const std::vector<ScannedSeam>& seams, Part part) {
     return markdown_table(rows);
 }
 
-/// Name, rms and largest distance of the method of least rms with one number of nodes.
+/// Name, rms and largest distance of the method of least rms with one number of nodes. Of two names of one line, which
+/// only rounding tells apart, the first in the alphabet.
 std::vector<std::string> best_cells(const SeamRanking& ranking, std::size_t k) {
-    const auto best = std::min_element(
-        ranking.methods.begin(), ranking.methods.end(),
-        [k](const SeamMethod& a, const SeamMethod& b) { return a.trials[k].rms_mm < b.trials[k].rms_mm; });
-    return {best->label, fixed(best->trials[k].rms_mm, kDecimals), fixed(best->trials[k].max_mm, kDecimals)};
+    constexpr double kRounding_mm = 1e-9;
+    const auto& methods = ranking.methods;
+    const auto rms = [k](const SeamMethod& m) { return m.trials[k].rms_mm; };
+    const double least = rms(*std::ranges::min_element(methods, {}, rms));
+    const SeamMethod* best = nullptr;
+    for (const SeamMethod& method : methods) {
+        if (rms(method) <= least + kRounding_mm && (best == nullptr || method.label < best->label)) {
+            best = &method;
+        }
+    }
+    return {best->label, fixed(rms(*best), kDecimals), fixed(best->trials[k].max_mm, kDecimals)};
 }
 
 std::string best_table(const std::vector<ScannedSeam>& seams) {
