@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "tests/fit/measured_saddle.hpp"
@@ -19,7 +20,7 @@ namespace {
 
 using namespace seampath;
 
-constexpr int kSeeds = 40;
+constexpr int kSeeds = 40, kRepeats = 5;
 
 struct Target {
     double branch_mm, rms_mm, max_mm, ms;
@@ -30,15 +31,22 @@ struct FitRow {
     double rms = 0, worst_rms = 0, max = 0, ms = 0;
 };
 
-/// rms over all seeds, the worst seed's, the largest distance, the median time.
+/// rms over all seeds, the worst seed's, the largest distance; of the times the median over seeds, each the best of
+/// several, for a busy machine only adds.
 FitRow measure(const SaddleCurve& saddle, const SaddleNoise& noise) {
     FitRow row;
     std::vector<double> ms;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
         const Seam seam = measured_saddle(saddle, noise, seed);
-        const auto start = std::chrono::steady_clock::now();
-        const SeamModel model = fit(seam, {}, spline_model());
-        ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        SeamModel model;
+        double best = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < kRepeats; ++k) {
+            const auto start = std::chrono::steady_clock::now();
+            model = fit(seam, {}, spline_model());
+            const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+            best = std::min(best, took.count());
+        }
+        ms.push_back(best);
         const SaddleErrors errors = errors_of(model, saddle);
         row.rms += errors.rms * errors.rms / kSeeds;
         row.worst_rms = std::max(row.worst_rms, errors.rms);
