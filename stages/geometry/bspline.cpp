@@ -222,7 +222,7 @@ double ArcLength::parameter(double station) const {
     return u;
 }
 
-double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, double start) {
+FootPoint foot_point(const CubicBSpline& curve, const Eigen::Vector3d& p, double start) {
     const double first = first_parameter(curve), last = last_parameter(curve);
     double u = start;
     CubicBasis basis = basis_at(curve, u);
@@ -263,7 +263,11 @@ double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, do
             break;
         }
     }
-    return curve.periodic ? wrap(u, first, last - first) : u;
+    return {curve.periodic ? wrap(u, first, last - first) : u, p + r};
+}
+
+double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, double start) {
+    return foot_point(curve, p, start).u;
 }
 
 double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p) {

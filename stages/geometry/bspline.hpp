@@ -67,6 +67,15 @@ double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p);
 /// The same from a start that is already near (within a knot span or so).
 double nearest_parameter(const CubicBSpline& curve, const Eigen::Vector3d& p, double start);
 
+/// A point of a curve.
+struct FootPoint {
+    double u = 0;
+    Eigen::Vector3d p;
+};
+
+/// That point itself.
+FootPoint foot_point(const CubicBSpline& curve, const Eigen::Vector3d& p, double start);
+
 /// Flank normals (unit), sigma and `modelled` at a station, interpolated between the model's samples.
 FlankSample flanks_at(const SeamModel& model, double station_mm);
 

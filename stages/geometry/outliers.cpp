@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "stages/geometry/arc.hpp"
 #include "stages/geometry/robust.hpp"
@@ -106,33 +107,31 @@ Loose drop_outliers(CurvePoints& points, const std::vector<double>& breaks, bool
             break;
         }
     }
-    Loose loose{spline.curve(), {}};
+    Loose loose{std::move(q), {}};
     for (std::ptrdiff_t i = 0; i < row.n; ++i) {
-        loose.bulge.push_back(bulge_at(q, row, i));
+        loose.bulge.push_back(bulge_at(loose.at, row, i));
     }
     return loose;
 }
 
 void weigh(CurvePoints& points, const std::vector<double>& given, const std::vector<double>& bulge,
-           const CubicBSpline& curve) {
+           const std::vector<Eigen::Vector3d>& off_curve, bool closed) {
     constexpr std::ptrdiff_t kNear = 3;
-    const Row row{static_cast<std::ptrdiff_t>(points.p.size()), curve.periodic};
-    std::vector<Eigen::Vector3d> residual;
+    const Row row{static_cast<std::ptrdiff_t>(points.p.size()), closed};
     std::vector<double> off;
     for (std::size_t i = 0; i < given.size(); ++i) {
-        residual.push_back(points.p[i] - position(curve, points.u[i]));
-        off.push_back(residual[i].norm() * std::sqrt(given[i]));
+        off.push_back(off_curve[i].norm() * std::sqrt(given[i]));
     }
     const double scale = std::max(1.0, kMedianToSigma * quantile(off, 0.5));
     const std::vector<double> before = points.weight;
     std::vector<double> same_side;
     for (std::ptrdiff_t i = 0; i < row.n; ++i) {
         // Where the neighbours are off to the same side, the curve is off: only what goes beyond them is the point's.
-        const Eigen::Vector3d& r = residual[row(i)];
+        const Eigen::Vector3d& r = off_curve[row(i)];
         same_side.clear();
         for (std::ptrdiff_t k = i - kNear; k <= i + kNear; ++k) {
             if (k != i && row.has(k) && before[row(k)] > 0) {
-                same_side.push_back(residual[row(k)].dot(r) / std::max(r.norm(), 1e-300));
+                same_side.push_back(off_curve[row(k)].dot(r) / std::max(r.norm(), 1e-300));
             }
         }
         const double excess = r.norm() - std::max(0.0, quantile(same_side, 0.5)) - bulge[row(i)];

@@ -61,12 +61,17 @@ void thin(std::vector<double>& breaks, Smoothing& s, const PenalisedSpline& spli
 }
 
 // Parameters of the points of the curve nearest to the points. The ends of an open curve stay where the seam's ends
-// are.
-void project(CurvePoints& points, const CubicBSpline& curve) {
-    const std::size_t fixed_end = curve.periodic ? 0 : 1;
-    for (std::size_t i = fixed_end; i + fixed_end < points.p.size(); ++i) {
-        points.u[i] = nearest_parameter(curve, points.p[i], points.u[i]);
+// are. Returns how far the points are off the curve.
+std::vector<Eigen::Vector3d> project(CurvePoints& points, const CubicBSpline& curve) {
+    std::vector<Eigen::Vector3d> off;
+    for (std::size_t i = 0; i < points.p.size(); ++i) {
+        const bool end = !curve.periodic && (i == 0 || i + 1 == points.p.size());
+        const FootPoint foot =
+            end ? FootPoint{points.u[i], position(curve, points.u[i])} : foot_point(curve, points.p[i], points.u[i]);
+        points.u[i] = foot.u;
+        off.emplace_back(points.p[i] - foot.p);
     }
+    return off;
 }
 
 // New parameters for points and breaks: length along the curve. Uneven speed would count as roughness.
@@ -149,11 +154,7 @@ FittedCurve smooth_points(CurvePoints& points, bool closed) {
     }
     const Loose loose = drop_outliers(points, breaks_at(points, end), closed);
     const std::vector<double> given = points.weight;
-    std::vector<Eigen::Vector3d> q;
-    for (const double u : points.u) {
-        q.push_back(position(loose.curve, u));
-    }
-    end = set_parameters(points, q, closed);
+    end = set_parameters(points, loose.at, closed);
     std::vector<double> breaks = breaks_at(points, end);
     Smoothing s;
     s.lambda = loose_lambda(points, breaks);
@@ -164,8 +165,7 @@ FittedCurve smooth_points(CurvePoints& points, bool closed) {
         PenalisedSpline spline(breaks, closed);
         spline.take(points);
         choose_smoothing(spline, points, s, round, uneven);
-        project(points, spline.curve());
-        weigh(points, given, loose.bulge, spline.curve());
+        weigh(points, given, loose.bulge, project(points, spline.curve()), closed);
         curve = spline.curve();
         if (round + 1 == kFootRounds) {
             sigma = sigma_along(spline, s, points, given);
